@@ -1,0 +1,226 @@
+#pragma once
+
+#include <rubato/core/error.hpp>
+#include <rubato/numerics/expression.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+// A study as the user wrote it: plain values with the place of each, nothing evaluated. Every number may be a formula
+// of the parameters. io/read_study fills it from a file; a C++ program may fill it by hand.
+namespace rubato::model {
+
+/// A number or, where `expression` is not empty, a formula of the parameters.
+struct Quantity {
+  double value = 0.0;
+  std::string expression;
+  Location where;
+
+  Quantity() = default;
+  Quantity(double number) : value(number) {}  // implicit: descriptions written in C++ read like the file
+  Quantity(std::string formula) : expression(std::move(formula)) {}
+  Quantity(const char* formula) : expression(formula) {}
+};
+
+struct ParameterDescription {
+  std::string name;
+  Quantity value;  ///< may use the parameters before it
+  Location where;
+};
+
+struct CoordinateDescription {
+  std::string name;
+  Quantity mass;      ///< [kg]
+  Quantity position;  ///< at the start [m]
+  Quantity velocity;  ///< at the start [m/s]
+  Location where;
+};
+
+/// The names of the two coordinates that an element joins; "ground" may be one of them.
+using Between = std::array<std::string, 2>;
+
+struct SpringDescription {
+  Between between;
+  Quantity stiffness;  ///< [N/m]
+  Location where;
+};
+
+struct DamperDescription {
+  Between between;
+  Quantity damping;  ///< [N s/m]
+  Location where;
+};
+
+/// C = sum over modes of M phi (2 ratio omega) phi^T M with phi^T M phi = 1: modes of the model without sliders.
+struct ModalDamping {
+  std::vector<Quantity> ratios;   ///< [-]; one for all modes, or one a mode
+  std::optional<Quantity> modes;  ///< only the lowest so many are damped
+  Location where;
+};
+
+/// C = mass M + stiffness K, with mass in [1/s] and stiffness in [s].
+struct RayleighDamping {
+  Quantity mass;
+  Quantity stiffness;
+  Location where;
+};
+
+/// What is added to the dashpots.
+using DampingDescription = std::variant<std::monostate, ModalDamping, RayleighDamping>;
+
+/// Jenkins element: a spring in series with a Coulomb limit.
+struct SliderDescription {
+  std::string name;
+  Between between;
+  Quantity stiffness;             ///< kT [N/m]
+  Quantity friction_coefficient;  ///< mu [-]
+  Quantity normal_load;           ///< N [N]
+  Location where;
+};
+
+/// amplitude * cos(angular_frequency * t + phase)
+struct HarmonicDescription {
+  Quantity amplitude;          ///< of either sign
+  Quantity angular_frequency;  ///< [rad/s]; `frequency` [Hz] of the file is turned into it by the factor below
+  Quantity phase;              ///< [rad]
+  bool frequency_in_hertz = false;
+};
+
+/// A formula of t and of the parameters.
+struct TimeFormulaDescription {
+  Quantity formula;  ///< `expression` is never empty
+};
+
+/// Linear interpolation between the rows of a CSV file (already read; time in the first column, increasing; two rows of
+/// the same time are a jump).
+struct TableDescription {
+  enum class Beyond { error, zero, hold };  ///< what holds before the first row and after the last
+  std::string file;
+  std::vector<double> times;  ///< [s]
+  std::vector<double> values;
+  Beyond beyond = Beyond::error;
+  Location where;
+};
+
+using TimeLawDescription = std::variant<HarmonicDescription, TimeFormulaDescription, TableDescription>;
+
+struct ForceDescription {
+  std::string on;          ///< a coordinate
+  TimeLawDescription law;  ///< [N]
+  Location where;
+};
+
+/// The ground moves in the direction of `direction`; coordinates are then relative to it, and the load is
+/// -M direction * acceleration(t).
+struct BaseMotionDescription {
+  enum class Of { acceleration, velocity, displacement };  ///< the latter two for harmonic laws only
+  TimeLawDescription law;                                  ///< [m/s2], [m/s] or [m]
+  Of of = Of::acceleration;
+  std::vector<std::pair<std::string, Quantity>> direction;  ///< by coordinate, [-]; empty: 1 for every coordinate
+  Location where;
+};
+
+/// Matrices read from Matrix Market files instead of coordinates, springs and dashpots, in triplets (zero-based).
+struct MatrixDescription {
+  struct Entry {
+    int row = 0, column = 0;
+    double value = 0.0;
+  };
+  std::string file;
+  int size = 0;
+  std::vector<Entry> entries;  ///< both triangles
+  Location where;
+};
+
+struct MatricesDescription {
+  MatrixDescription mass;                                            ///< [kg]
+  std::optional<MatrixDescription> damping;                          ///< [N s/m]
+  MatrixDescription stiffness;                                       ///< [N/m]
+  std::vector<std::string> names;                                    ///< of the coordinates; "1", "2", ... unless given
+  std::vector<std::pair<std::string, Quantity>> position, velocity;  ///< at the start, where not zero
+  Location where;
+};
+
+struct ModelDescription {
+  std::vector<CoordinateDescription> coordinates;
+  std::optional<MatricesDescription> matrices;
+  std::vector<SpringDescription> springs;
+  std::vector<DamperDescription> dampers;
+  DampingDescription damping;
+  std::vector<SliderDescription> sliders;
+  std::vector<ForceDescription> forces;
+  std::optional<BaseMotionDescription> base_motion;
+  Location where;
+};
+
+/// A method by its name, with the parameters that it takes (`alpha`, `beta`, `gamma`, `rho_inf`, `theta`).
+struct MethodDescription {
+  std::string name = "generalized_alpha";
+  std::vector<std::pair<std::string, Quantity>> parameters;
+  Location where;
+};
+
+/// A coordinate, or the difference of two ("blade1 - damper").
+struct ObservationDescription {
+  std::string first;
+  std::string second;  ///< empty: `first` alone
+  Location where;
+};
+
+struct OutputDescription {
+  enum class Kind { every_step, every, interval, times };
+  Kind kind = Kind::every_step;
+  int every = 1;                ///< steps
+  Quantity interval;            ///< [s]
+  std::vector<Quantity> times;  ///< [s]
+  Location where;
+};
+
+struct TransientDescription {
+  MethodDescription method;
+  std::optional<Quantity> step;  ///< [s]; not for `exact`
+  Quantity duration;             ///< [s]
+  OutputDescription output;
+  std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
+  bool energy = true;                                          ///< keep the energy ledger
+  bool allow_unstable = false;
+};
+
+struct MethodStudyDescription {
+  std::vector<MethodDescription> methods;  ///< all that apply unless given
+  Quantity step;                           ///< [s], of the table of errors
+  Quantity duration;                       ///< [s]
+  std::vector<Quantity> ladder;            ///< steps of the figure error against step; a default ladder unless given
+  std::optional<ObservationDescription> observe;  ///< the first coordinate unless given
+  bool as_printed = false;                        ///< also the conventions of the thesis's tables
+};
+
+struct AnalysisDescription {
+  std::string name;
+  std::variant<TransientDescription, MethodStudyDescription> task;
+  Location where;
+};
+
+struct StudyDescription {
+  std::string title;
+  std::string file;  ///< as the user named it; messages use it
+  std::string text;  ///< the whole file, kept in the results
+  std::vector<ParameterDescription> parameters;
+  ModelDescription model;
+  std::vector<AnalysisDescription> analyses;
+};
+
+/// The value of a quantity. Throws InvalidInput, at its place, for a faulty formula or a non-finite value; `what` names
+/// the key in the message.
+double evaluate(const Quantity& quantity, const numerics::Parameters& parameters, const std::string& what);
+
+/// The values of the parameters, each a formula of those before it; `overrides` (from --set) replace values and must
+/// name known parameters. Throws InvalidInput.
+numerics::Parameters evaluate_parameters(const std::vector<ParameterDescription>& parameters,
+                                         const numerics::Parameters& overrides = {});
+
+}  // namespace rubato::model

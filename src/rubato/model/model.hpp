@@ -1,0 +1,76 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/model/time_law.hpp>
+#include <rubato/numerics/expression.hpp>
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace rubato::model {
+
+/// Spring or dashpot between two coordinates (`ground` = -1 allowed for either).
+struct LinearElement {
+  Index first = ground, second = ground;
+  double coefficient = 0.0;  ///< [N/m] or [N s/m], >= 0
+};
+
+/// Jenkins element on u = x_first - x_second:
+///   fc = clamp(fc_old + stiffness (u - u_old), -limit, limit);  -fc acts on first, +fc on second.
+struct Slider {
+  std::string name;
+  Index first = ground, second = ground;
+  double stiffness = 0.0;  ///< kT [N/m], > 0
+  double limit = 0.0;      ///< mu N [N], >= 0
+};
+
+struct Force {
+  Index coordinate = 0;
+  TimeLaw law;  ///< [N]
+};
+
+struct BaseMotion {
+  Vector direction;  ///< [n], dimensionless
+  TimeLaw law;       ///< acceleration of the ground [m/s2]
+};
+
+struct FullMatrices {
+  SparseMatrix mass, damping, stiffness;  ///< [n x n], symmetric; damping may hold no entries
+};
+
+struct ModalDampingRatios {
+  std::vector<double> ratios;  ///< one for all modes, or one a mode [-]
+  Index modes = -1;            ///< only the lowest so many; -1: all
+};
+
+struct RayleighCoefficients {
+  double mass = 0.0;       ///< [1/s]
+  double stiffness = 0.0;  ///< [s]
+};
+
+using Damping = std::variant<std::monostate, ModalDampingRatios, RayleighCoefficients>;
+
+/// A structure of coordinates with values for everything: validated, immutable by convention once built.
+struct Model {
+  std::vector<std::string> coordinates;  ///< names, [n]
+  Vector mass;                           ///< [n] [kg]; unused where `matrices` is set
+  Vector position, velocity;             ///< at the start, [n] [m], [m/s]
+  std::vector<LinearElement> springs, dashpots;
+  std::optional<FullMatrices> matrices;  ///< instead of mass, springs and dashpots
+  Damping damping;                       ///< in addition to dashpots
+  std::vector<Slider> sliders;
+  std::vector<Force> forces;
+  std::optional<BaseMotion> base_motion;
+
+  Index size() const { return static_cast<Index>(coordinates.size()); }
+};
+
+/// The model for given values of the parameters. Throws InvalidInput, at the place in the user's file, for an unknown
+/// or duplicate name, a value out of its range (negative mass, zero mass where it makes M singular, negative stiffness,
+/// ...) or a faulty formula.
+Model build(const ModelDescription& description, const numerics::Parameters& parameters);
+
+}  // namespace rubato::model

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <rubato/numerics/expression.hpp>
+
+#include <variant>
+#include <vector>
+
+namespace rubato::model {
+
+/// amplitude * cos(angular_frequency * t + phase)
+struct HarmonicLaw {
+  double amplitude = 0.0;
+  double angular_frequency = 0.0;  ///< [rad/s]
+  double phase = 0.0;              ///< [rad]
+};
+
+struct FormulaLaw {
+  numerics::Expression formula;  ///< of t [s]
+};
+
+/// Linear interpolation; times do not decrease, and two equal times are a jump with a value on either side.
+struct TableLaw {
+  enum class Beyond { error, zero, hold };  ///< before the first row and after the last
+  std::vector<double> times;                ///< [s]
+  std::vector<double> values;
+  Beyond beyond = Beyond::error;  ///< error: an analysis refuses to run beyond the table before it starts
+};
+
+using TimeLaw = std::variant<HarmonicLaw, FormulaLaw, TableLaw>;
+
+/// Which limit to take where a law jumps.
+enum class Side { left, right };
+
+/// The value of a table at t; where `beyond` is error, the nearest row's (analyses check the range beforehand).
+double value(const TableLaw& table, double t, Side side = Side::right);
+double value(const TimeLaw& law, double t, Side side = Side::right);
+
+}  // namespace rubato::model

@@ -1,0 +1,59 @@
+#include <rubato/system/loads.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace rubato::system {
+namespace {
+
+bool joins(const model::HarmonicLaw& a, const model::TimeLaw& b) {
+  const auto* other = std::get_if<model::HarmonicLaw>(&b);
+  return other && other->angular_frequency == a.angular_frequency && other->phase == a.phase;
+}
+
+}  // namespace
+
+Loads::Loads(std::vector<LoadTerm> terms) {
+  for (LoadTerm& term : terms) {
+    auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law);
+    if (harmonic) {
+      for (double& weight : term.weights) weight *= harmonic->amplitude;
+      harmonic->amplitude = 1.0;
+      const auto same = std::find_if(terms_.begin(), terms_.end(),
+                                     [&](const LoadTerm& known) { return joins(*harmonic, known.law); });
+      if (same != terms_.end()) {
+        same->rows.insert(same->rows.end(), term.rows.begin(), term.rows.end());
+        same->weights.insert(same->weights.end(), term.weights.begin(), term.weights.end());
+        continue;
+      }
+    }
+    terms_.push_back(std::move(term));
+  }
+}
+
+bool Loads::are_harmonic() const {
+  return std::all_of(terms_.begin(), terms_.end(),
+                     [](const LoadTerm& term) { return std::holds_alternative<model::HarmonicLaw>(term.law); });
+}
+
+void Loads::evaluate(double t, Vector& f, model::Side side) const {
+  f.setZero();
+  for (const LoadTerm& term : terms_) {
+    const double now = model::value(term.law, t, side);
+    for (std::size_t i = 0; i < term.rows.size(); ++i) f[term.rows[i]] += term.weights[i] * now;
+  }
+}
+
+std::vector<double> Loads::breakpoints(double from, double to) const {
+  std::vector<double> times;
+  for (const LoadTerm& term : terms_)
+    if (const auto* table = std::get_if<model::TableLaw>(&term.law))
+      std::copy_if(table->times.begin(), table->times.end(), std::back_inserter(times),
+                   [&](double t) { return t > from && t < to; });
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace rubato::system

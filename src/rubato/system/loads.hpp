@@ -1,0 +1,38 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/time_law.hpp>
+
+#include <vector>
+
+namespace rubato::system {
+
+/// A time law on some coordinates: f += weights * law(t).
+struct LoadTerm {
+  std::vector<Index> rows;
+  std::vector<double> weights;  ///< harmonic laws of equal frequency and phase share a term: their amplitude is in here
+  model::TimeLaw law;
+};
+
+/// The external loads f(t) [n] [N]. Holds the workspace of its formulas: each thread takes a copy.
+class Loads {
+ public:
+  Loads() = default;
+  /// Joins the harmonic terms of equal frequency and phase into one; the law of a harmonic term has amplitude 1 then.
+  explicit Loads(std::vector<LoadTerm> terms);
+
+  const std::vector<LoadTerm>& terms() const { return terms_; }
+  /// Only harmonic terms: loads whose response has a closed form.
+  bool are_harmonic() const;
+
+  /// Writes f(t); allocates nothing.
+  void evaluate(double t, Vector& f, model::Side side = model::Side::right) const;
+
+  /// Times in (from, to) at which a table has a row: kinks and jumps, sorted, without doubles.
+  std::vector<double> breakpoints(double from, double to) const;
+
+ private:
+  std::vector<LoadTerm> terms_;
+};
+
+}  // namespace rubato::system

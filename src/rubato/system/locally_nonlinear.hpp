@@ -1,0 +1,73 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/model.hpp>
+#include <rubato/system/loads.hpp>
+#include <rubato/system/state.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::system {
+
+/// A linear structure with sliders:
+///
+///   M a + C v + K q + B fc = f(t),   u = B^T q,   fc = clamp(fc_old + kT (u - u_old), -limit, limit)
+///
+/// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m] e_first - e_second of
+/// each slider. Immutable; integrators keep what moves in a State and in their workspace.
+class LocallyNonlinear {
+ public:
+  struct Parts {
+    SparseMatrix mass, damping, stiffness;  ///< [n x n]
+    std::vector<model::Slider> sliders;
+    Loads loads;
+    State start;                           ///< t = 0; q, v of the model; sliders without force
+    std::vector<std::string> coordinates;  ///< names for messages and results, [n]
+  };
+
+  explicit LocallyNonlinear(Parts parts);
+
+  Index size() const { return parts_.mass.rows(); }
+  Index slider_count() const { return static_cast<Index>(parts_.sliders.size()); }
+  const SparseMatrix& mass() const { return parts_.mass; }
+  const SparseMatrix& damping() const { return parts_.damping; }
+  const SparseMatrix& stiffness() const { return parts_.stiffness; }
+  const std::vector<model::Slider>& sliders() const { return parts_.sliders; }
+  const Loads& loads() const { return parts_.loads; }
+  const State& start() const { return parts_.start; }
+  const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
+  bool has_diagonal_mass() const { return has_diagonal_mass_; }
+
+  /// u = x_first - x_second of slider i [m]
+  double relative_displacement(Index i, const Vector& q) const {
+    const auto& s = parts_.sliders[static_cast<std::size_t>(i)];
+    return (s.first == ground ? 0.0 : q[s.first]) - (s.second == ground ? 0.0 : q[s.second]);
+  }
+  /// out += factor * B fc
+  void add_slider_forces(const Vector& slider_force, double factor, Vector& out) const;
+
+  /// K plus kT of the given sliders (all of them by default): the stiffness with those sliders stuck.
+  SparseMatrix stuck_stiffness() const;
+
+ private:
+  Parts parts_;
+  bool has_diagonal_mass_ = false;
+};
+
+/// The acceleration of equilibrium at a state, M a = f(t) - C v - K q - B fc: what is reported. A workspace: one a
+/// thread.
+class EquilibriumAcceleration {
+ public:
+  explicit EquilibriumAcceleration(const LocallyNonlinear& system);
+  ~EquilibriumAcceleration();
+  EquilibriumAcceleration(EquilibriumAcceleration&&) noexcept;
+  void operator()(const State& state, Vector& acceleration);
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace rubato::system
