@@ -155,6 +155,9 @@ class Report(unittest.TestCase):
         text = self.browser.script("return document.querySelector('main').textContent")
         self.assertIn("bl\"ade</script><b>\u03a9", text)
         self.assertIn("</script><script>document.title = 'taken'</script>", text)
+        self.browser.script("[...document.querySelectorAll('figure')].at(-1).scrollIntoView({behavior: 'instant'})")
+        self.assertEqual(self.browser.wait("return [...document.querySelectorAll('figure')].at(-1)"
+                                           ".querySelector('.legendtext')?.textContent"), "bl\"ade</script><b>\u03a9")
 
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))

@@ -24,8 +24,15 @@ int group_of(int parent, const std::string& name) {
 }
 
 int labelled_dimension(int group, const results::Block& block) {
+  // Dimensions of the groups above are visible too: only those of this one count.
+  int count = 0, own[NC_MAX_DIMS] = {};
+  check(nc_inq_dimids(group, &count, own, 0));
+  for (int i = 0; i < count; ++i) {
+    char name[NC_MAX_NAME + 1] = {};
+    check(nc_inq_dimname(group, own[i], name));
+    if (block.dimension == name) return own[i];
+  }
   int dimension = -1;
-  if (nc_inq_dimid(group, block.dimension.c_str(), &dimension) == NC_NOERR) return dimension;
   check(nc_def_dim(group, block.dimension.c_str(), block.labels.size(), &dimension));
   int variable = -1;
   check(nc_def_var(group, block.dimension.c_str(), NC_STRING, 1, &dimension, &variable));
@@ -63,7 +70,7 @@ struct SmallModel {
 
 void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energies) {
   const std::size_t n = model.mass.size(), s = model.ends.size();
-  std::vector<double> q(n), v(n), a(n), fc(s), u(s);
+  std::vector<double> q(n), v(n), a(n), fc(s), u(s), pushed(n), resisted(n);
   double damped = 0.0, rubbed = 0.0, work = 0.0;
   for (int step = 0; step <= steps; ++step) {
     const double t = step * h;
@@ -79,13 +86,14 @@ void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energ
     for (std::size_t i = 0; i < n; ++i) {
       double damping = model.damping_per_mass * model.mass[i] * v[i];
       double force = model.amplitude[i] * std::cos(model.angular_frequency * t);
-      work += force * v[i] * h;
+      const double load = force;
       for (std::size_t j = 0; j < n; ++j) {
         force -= model.stiffness[i][j] * q[j];
         damping += model.damping_per_stiffness * model.stiffness[i][j] * v[j];
         strain += 0.5 * q[i] * model.stiffness[i][j] * q[j];
       }
-      damped += damping * v[i] * h;
+      pushed[i] = load;
+      resisted[i] = damping;
       kinetic += 0.5 * model.mass[i] * v[i] * v[i];
       for (std::size_t k = 0; k < s; ++k) {
         if (model.ends[k].first == static_cast<int>(i)) force -= fc[k];
@@ -101,7 +109,12 @@ void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energ
     rows.push_back(row);
     energies.push_back(
         {t, kinetic, strain, stored, damped, rubbed, work, work - kinetic - strain - stored - damped - rubbed});
-    for (std::size_t i = 0; i < n; ++i) v[i] += h * a[i];
+    for (std::size_t i = 0; i < n; ++i) {
+      const double mean_velocity = v[i] + 0.5 * h * a[i];
+      work += pushed[i] * mean_velocity * h;
+      damped += resisted[i] * mean_velocity * h;
+      v[i] += h * a[i];
+    }
     for (std::size_t i = 0; i < n; ++i) q[i] += h * v[i];
   }
 }

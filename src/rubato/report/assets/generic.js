@@ -28,7 +28,7 @@ function generic_figure(table, variable) {
   return make_figure({
     caption: `${what}${how}${variable.dimension ? shortened(variable) : ""}`,
     draw: () => ({
-      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: line.name,
+      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                                             line: line_style(index), showlegend: true})),
       layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable))},
     }),

@@ -50,7 +50,7 @@ function ladder_figure(table, variable) {
     height: 560,
     draw: () => ({
       traces: [...slopes, ...series.map((line, index) => ({
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: phrase(line.name), line: line_style(index),
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plot_text(line.name), line: line_style(index),
         marker: {size: 5, symbol: index % 8}}))],
       layout: {xaxis: axis(axis_label(series[0].x_variable), logarithmic), yaxis: axis(axis_label(variable), logarithmic)},
     }),
@@ -64,7 +64,7 @@ function stability_figure(table, variable) {
   return make_figure({
     caption: `${phrase(variable.name)} of each method over the step times the angular frequency of a mode.`, height: 460,
     draw: () => ({
-      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: phrase(line.name),
+      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                                             line: line_style(index)})),
       layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable), range)},
     }),
@@ -78,14 +78,14 @@ function response_figures(table) {
   const series = series_of(table, variable);
   const exact = named ? table.overview[named.index][0] : series.find((line) => line.name === "exact")?.y;
   return series.filter((line) => line.name !== "exact").map((line) => make_figure({
-    caption: `${phrase(line.name)}: response beside the exact one, and their difference below. ${overview_text(table)}`,
+    caption: `${line.name}: response beside the exact one, and their difference below. ${overview_text(table)}`,
     height: 360, is_small: true,
     draw: () => {
       const traces = [];
       if (exact) {
         traces.push({type: "scatter", mode: "lines", x: line.x, y: exact, name: "Exact", line: {color: "#1c242c", width: 2.4}});
       }
-      traces.push({type: "scatter", mode: "lines", x: line.x, y: line.y, name: phrase(line.name),
+      traces.push({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                    line: {color: "#e69f00", width: 1.4, dash: "dash"}});
       const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2"} : {}), yaxis: axis(axis_label(variable))};
       if (exact) {

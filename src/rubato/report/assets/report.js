@@ -64,12 +64,12 @@ function write_page() {
   const main = element("main", {});
   const title = data.attributes.title || data.results_file;
   const version = data.attributes.version ? ` ${data.attributes.version}` : "";
-  main.append(element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
-                      element("h1", {}, title)));
-  const inline_contents = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
+  const header = element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
+                         element("h1", {}, title));
+  const navigation = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
   write_summary(main);
   data.analyses.forEach((analysis, index) => write_analysis(main, analysis, index));
-  document.getElementById("page").append(inline_contents, main);
+  document.getElementById("page").append(header, navigation, main);
   watch_figures();
 }
 
