@@ -148,9 +148,11 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   }
   context.progress.end();
   if (report.end == integrate::MarchEnd::failed) {
-    run = {RunStatus::failed, reason(report, system)};
+    run.status = RunStatus::failed;
+    run.message = reason(report, system);
   } else if (report.end == integrate::MarchEnd::stopped && state.t < plan.duration) {
-    run = {RunStatus::interrupted, fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration)};
+    run.status = RunStatus::interrupted;
+    run.message = fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration);
   }
   run.statistics = {{"steps", std::to_string(report.steps)},
                     {"factorisations", std::to_string(stepper->factorisations())},

@@ -39,6 +39,13 @@ class LoadValues {
     end_time_ = t1;
   }
 
+  /// Where a load that is not finite acts, or -1: the solution would blame every coordinate.
+  Index fault() const {
+    for (std::size_t i = 0; i < count(); ++i)
+      if (!std::isfinite(end_[i]) || !std::isfinite(start_[i])) return loads_.terms()[i].rows.front();
+    return -1;
+  }
+
   double start(std::size_t i) const { return start_[i]; }
   double end(std::size_t i) const { return end_[i]; }
   const system::Loads& loads() const { return loads_; }

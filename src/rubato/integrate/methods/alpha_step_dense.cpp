@@ -90,8 +90,10 @@ class DenseAlphaStep final : public AlphaStep {
         if (b != ground) travel -= qs_[b] - q0[b] + bh2 * a1_[b];
         trial[i] = from.slider_force[i] + stiffness_[static_cast<std::size_t>(i)] * travel;
       }
-      if (!contact_.solve(trial, from.slider_force.data(), to.slider_force.data()))
+      if (!contact_.solve(trial, from.slider_force.data(), to.slider_force.data())) {
+        if (!std::isfinite(a1_.sum())) return {StepOutcome::not_finite, worst()};
         return {StepOutcome::not_converged, contact_.worst()};
+      }
       for (Index i = 0; i < m_; ++i) a1_ -= (end * to.slider_force[i]) * on_slider_.col(i);
     }
     Eigen::Map<Column>(to.auxiliary_acceleration.data(), n_) = a1_;

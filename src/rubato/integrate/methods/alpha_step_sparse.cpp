@@ -86,8 +86,10 @@ class SparseAlphaStep final : public AlphaStep {
                               travel_of(second_[static_cast<std::size_t>(i)], qs, q0, bh2);
         trial_[i] = from.slider_force[i] + system_.sliders()[static_cast<std::size_t>(i)].stiffness * travel;
       }
-      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data()))
-        return {StepOutcome::not_converged, contact_.worst()};
+      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data())) {
+        if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
+        return {StepOutcome::not_finite, -1};
+      }
       push_.setZero();
       for (Index i = 0; i < m_; ++i) {
         const double push = end * to.slider_force[i];

@@ -56,7 +56,9 @@ class AlphaStepper final : public Stepper {
         load_[i] = (1.0 - p_.alpha_f) * loads_.end(i) + p_.alpha_f * loads_.start(i);
     }
     to.t = t1;
-    return step_->solve(from, load_.data(), to);
+    StepReport report = step_->solve(from, load_.data(), to);
+    if (report.outcome != StepOutcome::accepted && loads_.fault() >= 0) report.worst = loads_.fault();
+    return report;
   }
 
   int factorisations() const override { return step_.factorisations(); }
@@ -86,8 +88,11 @@ class WilsonStepper final : public Stepper {
     loads_.evaluate(from.t, t1);
     for (std::size_t i = 0; i < load_.size(); ++i)
       load_[i] = loads_.start(i) + theta_ * (loads_.end(i) - loads_.start(i));
-    const StepReport report = step_->solve(from, load_.data(), beyond_);
-    if (report.outcome != StepOutcome::accepted) return report;
+    StepReport report = step_->solve(from, load_.data(), beyond_);
+    if (report.outcome != StepOutcome::accepted) {
+      if (loads_.fault() >= 0) report.worst = loads_.fault();
+      return report;
+    }
     const Vector& a0 = from.auxiliary_acceleration;
     to.t = t1;
     to.auxiliary_acceleration = a0 + (beyond_.auxiliary_acceleration - a0) / theta_;

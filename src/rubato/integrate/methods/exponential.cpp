@@ -52,8 +52,10 @@ class ExponentialStepper final : public Stepper {
         if (slider.second != ground) travel -= y1_[slider.second] - from.q[slider.second];
         trial_[i] = from.slider_force[i] + slider.stiffness * travel;
       }
-      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data()))
-        return {StepOutcome::not_converged, contact_.worst()};
+      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data())) {
+        if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
+        return {StepOutcome::not_finite, loads_.fault()};
+      }
       y1_.noalias() -= on_slope_ * to.slider_force;
     }
     to.t = t1;
@@ -61,7 +63,7 @@ class ExponentialStepper final : public Stepper {
     to.v = y1_.tail(n_) / h;
     if (!std::isfinite(y1_.sum()))
       for (Index i = 0; i < 2 * n_; ++i)
-        if (!std::isfinite(y1_[i])) return {StepOutcome::not_finite, i % n_};
+        if (!std::isfinite(y1_[i])) return {StepOutcome::not_finite, loads_.fault() >= 0 ? loads_.fault() : i % n_};
     return {};
   }
 
