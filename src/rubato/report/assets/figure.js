@@ -1,0 +1,101 @@
+// Numbered figures: drawn when they come into view, and all of them before printing.
+
+const figures = [];
+let figure_count = 0;
+
+// The width that A4 with the margins of style.css leaves, in CSS pixels.
+const paper_width = 672;
+const paper_gap = 16;
+
+const axis_style = {
+  showline: true, mirror: true, linecolor: "#3c4650", linewidth: 1, ticks: "inside", tickcolor: "#3c4650", ticklen: 5,
+  gridcolor: "#e4e8ec", zeroline: true, zerolinecolor: "#b4bcc4", zerolinewidth: 1, exponentformat: "power",
+  hoverformat: ".5~g", automargin: true,
+};
+
+function axis(title, more = {}) {
+  return {...axis_style, title: {text: title, standoff: 8}, ...more};
+}
+
+const logarithmic = {type: "log", dtick: 1, zeroline: false, minor: {ticks: "inside", ticklen: 3}};
+
+function complete_layout(layout, height, is_small) {
+  return {
+    height, autosize: true, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", hovermode: "closest",
+    font: {family: "inherit", size: is_small ? 12 : 13, color: "#1c242c"},
+    margin: {l: 64, r: 16, t: 36, b: 48},
+    legend: is_small ? {orientation: "h", x: 0, y: 1.02, yanchor: "bottom"}
+                     : {x: 1.01, xanchor: "left", y: 1, bordercolor: "#d4dae0", borderwidth: 0, font: {size: 12}},
+    hoverlabel: {bgcolor: "#ffffff", bordercolor: "#6c7680", font: {color: "#1c242c"}},
+    modebar: {bgcolor: "rgba(0,0,0,0)", color: "#8c96a0", activecolor: "#1c242c"},
+    ...layout,
+  };
+}
+
+/**
+ * A figure.
+ *
+ * choosers: [{label, options: [text, ...]}]: rows of buttons; draw(chosen) is given the index chosen in each.
+ * draw: returns {traces, layout}.
+ * is_small: half the width of the page.
+ */
+function make_figure({caption, draw, choosers = [], height = 380, is_small = false}) {
+  const number = ++figure_count;
+  const chosen = choosers.map(() => 0);
+  const plot = element("div", {class: "plot", style: `height:${height}px`});
+  const save = element("button", {
+    type: "button", class: "save", title: `Download figure ${number} as SVG`,
+    onclick: () => Plotly.downloadImage(plot, {format: "svg", filename: `figure-${number}`,
+                                               width: plot.clientWidth, height}),
+  }, "SVG");
+  const tools = element("div", {class: "tools"}, choosers.map((chooser, which) => element(
+    "div", {class: "chooser", role: "group", "aria-label": chooser.label}, chooser.options.map((option, index) => element(
+      "button", {type: "button", "aria-pressed": String(index === 0), onclick: (event) => {
+        chosen[which] = index;
+        for (const button of event.target.parentNode.children) {
+          button.setAttribute("aria-pressed", String(button === event.target));
+        }
+        render();
+      }}, option)))), save);
+  const node = element("figure", {id: `figure-${number}`, class: is_small ? "small" : undefined}, tools, plot,
+                       element("figcaption", {}, element("b", {}, `Figure ${number}. `), caption));
+
+  function render(size = {}) {
+    const {traces, layout} = draw(chosen);
+    const config = {
+      responsive: true, displaylogo: false, displayModeBar: "hover", doubleClick: "reset",
+      modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage"],
+    };
+    figure.is_drawn = true;
+    return Plotly.react(plot, traces, {...complete_layout(layout, height, is_small), ...size}, config);
+  }
+  const figure = {node, plot, render, is_small, is_drawn: false};
+  figures.push(figure);
+  return node;
+}
+
+function draw_all() {
+  return Promise.all(figures.filter((figure) => !figure.is_drawn).map((figure) => figure.render()));
+}
+
+/** Draws what comes within a screen of the view, and everything at the width of the paper before printing. */
+function watch_figures() {
+  const observer = new IntersectionObserver((entries) => {
+    for (const entry of entries.filter((seen) => seen.isIntersecting)) {
+      observer.unobserve(entry.target);
+      const figure = figures.find((candidate) => candidate.node === entry.target);
+      if (!figure.is_drawn) figure.render();
+    }
+  }, {rootMargin: "100% 0px"});
+  for (const figure of figures) observer.observe(figure.node);
+
+  window.addEventListener("beforeprint", () => {
+    for (const figure of figures) {
+      const width = figure.is_small ? (paper_width - paper_gap) / 2 : paper_width;
+      figure.render({width, autosize: false});
+    }
+  });
+  window.addEventListener("afterprint", () => {
+    for (const figure of figures) figure.render();
+  });
+}

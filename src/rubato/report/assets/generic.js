@@ -1,0 +1,36 @@
+// Tables of no kind that the report knows: as they are where they are short, else as lines over their rows.
+
+function write_tables(chapter, tables) {
+  for (const table of tables) {
+    const title = table.name ? phrase(table.name) : "Results";
+    if (table.rows === 0) {
+      add_section(chapter, title, element("p", {class: "note"}, "No row was written."));
+      continue;
+    }
+    const width = table.overview.reduce((sum, columns) => sum + columns.length, 0);
+    const body = [];
+    const is_short = table.rows <= 60 && width <= 14;
+    if (is_short) body.push(results_table(table, `${title}, ${count_text(table.rows)} rows.`));
+    if (table.variables[0].categories.length === 0 && table.rows > 2) {
+      for (const variable of plotted_variables(table)) body.push(generic_figure(table, variable));
+    } else if (!is_short) {
+      body.push(element("p", {class: "note"}, `${count_text(table.rows)} rows are in the results file.`));
+    }
+    add_section(chapter, title, body);
+  }
+}
+
+function generic_figure(table, variable) {
+  const series = series_of(table, variable);
+  const what = variable.description ? `${phrase(variable.name)}: ${variable.description}.` : `${phrase(variable.name)}.`;
+  const how = table.is_envelope
+    ? ` The extremes of ${count_text(table.overview[0][0].length / 2)} buckets of ${count_text(table.rows)} rows.` : "";
+  return make_figure({
+    caption: `${what}${how}${variable.dimension ? shortened(variable) : ""}`,
+    draw: () => ({
+      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: line.name,
+                                            line: line_style(index), showlegend: true})),
+      layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable))},
+    }),
+  });
+}

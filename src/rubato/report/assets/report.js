@@ -1,0 +1,76 @@
+// The page from the data beside it.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+
+function badge(status) {
+  const known = {done: "done", failed: "failed", interrupted: "interrupted"};
+  return element("span", {class: `badge ${known[status] ?? "unknown"}`}, status || "incomplete");
+}
+
+/** Name and value in two columns. */
+function definitions(pairs) {
+  return element("dl", {}, pairs.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
+}
+
+function what_became(analysis) {
+  const {status, message} = analysis.attributes;
+  if (status === "done") return null;
+  return element("div", {class: "alarm", role: "alert"}, element("b", {}, `${analysis.name}: ${status || "incomplete"}. `),
+                 message || "The results file does not say how this analysis ended; what it wrote is shown.");
+}
+
+function write_summary(parent) {
+  const chapter = add_chapter(parent, "Summary");
+  const statistics = (analysis) => Object.entries(analysis.attributes)
+    .filter(([name]) => !["type", "method", "step", "status", "message"].includes(name))
+    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${value}`).join("; ");
+  chapter.node.append(...data.analyses.map(what_became).filter((node) => node));
+  add_section(chapter, "Analyses", make_table({
+    caption: "What was run and what became of it.",
+    columns: ["Analysis", "Type", "Method", "Step", "Status", "Notes"].map((title) => ({title, is_text: true})),
+    rows: data.analyses.map((analysis) => {
+      const {type, method, step, status} = analysis.attributes;
+      return [element("a", {href: `#analysis-${data.analyses.indexOf(analysis)}`}, analysis.name), type ? phrase(type) : "–",
+              method ?? "–", step ?? "–", badge(status), statistics(analysis) || "–"];
+    }),
+  }));
+  const facts = Object.entries(data.attributes).filter(([name]) => !["title", "study"].includes(name))
+    .map(([name, value]) => [phrase(name), value]);
+  add_section(chapter, "Provenance", definitions([...facts, ["Results file", data.results_file]]));
+  if (data.attributes.study) {
+    chapter.node.append(element("details", {}, element("summary", {}, "The study, as it was run"),
+                                element("pre", {}, data.attributes.study)));
+  }
+}
+
+function write_analysis(parent, analysis, index) {
+  const {type, method, step, status} = analysis.attributes;
+  const facts = [type && phrase(type), method && `method ${method}`, step && `step ${step}`].filter((fact) => fact);
+  const chapter = add_chapter(parent, analysis.name, element("p", {class: "facts", id: `analysis-${index}`}, facts.join(" · "),
+                                                             facts.length ? " " : "", badge(status)),
+                              what_became(analysis));
+  if (is_transient(analysis)) {
+    write_transient(chapter, analysis);
+    write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));
+  } else if (is_method_study(analysis)) {
+    write_method_study(chapter, analysis, data.theory);
+  } else {
+    write_tables(chapter, analysis.tables);
+  }
+  if (analysis.tables.length === 0) chapter.node.append(element("p", {class: "note"}, "It left no results."));
+}
+
+function write_page() {
+  const main = element("main", {});
+  const title = data.attributes.title || data.results_file;
+  const version = data.attributes.version ? ` ${data.attributes.version}` : "";
+  main.append(element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
+                      element("h1", {}, title)));
+  const inline_contents = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
+  write_summary(main);
+  data.analyses.forEach((analysis, index) => write_analysis(main, analysis, index));
+  document.getElementById("page").append(inline_contents, main);
+  watch_figures();
+}
+
+write_page();

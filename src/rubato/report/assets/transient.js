@@ -1,0 +1,178 @@
+// A transient: time histories, phase portrait, hysteresis loops, energy ledger, key numbers.
+
+/** What the figures of the last rows show, in words. */
+function window_text(table) {
+  if (!table.window) return `All ${count_text(table.rows)} rows are shown.`;
+  return `The last ${count_text(table.window[0][0].length)} of ${count_text(table.rows)} rows are shown, ` +
+    `from t = ${Number(table.window[0][0][0].toPrecision(6))} s.`;
+}
+
+function overview_text(table) {
+  if (!table.is_envelope) return "Every row is drawn.";
+  return `The whole run shows the extremes of ${count_text(table.overview[0][0].length / 2)} buckets of ` +
+    `${count_text(table.rows)} rows, so no peak is lost; the last ${count_text(table.window[0][0].length)} rows are ` +
+    "drawn as they are.";
+}
+
+const whole_or_window = {label: "Range", options: ["Whole run", "Last rows"]};
+
+/** The columns that a range shows: 0 the whole run, 1 the last rows. */
+function columns_of(table, range) {
+  return range === 1 && table.window ? table.window : table.overview;
+}
+
+function lines_over_rows(table, variable, range) {
+  const columns = columns_of(table, range);
+  return columns[variable.index].map((y, label) => ({
+    type: "scatter", mode: "lines", x: columns[0][0], y, line: line_style(label), showlegend: true,
+    name: variable.dimension ? variable.labels[label] : phrase(variable.name),
+  }));
+}
+
+/** A figure of some variables over the rows, one at a time. */
+function history_figure(table, variables, subject) {
+  const choosers = [{label: "Quantity", options: variables.map((variable) => phrase(variable.name))}];
+  if (table.window) choosers.push(whole_or_window);
+  const others = variables.length > 1 ? " The buttons above choose the quantity." : "";
+  return make_figure({
+    caption: `${subject} over ${table.variables[0].name}.${others} ${overview_text(table)}${shortened(variables[0])}`,
+    choosers, height: 400,
+    draw: ([quantity, range = 0]) => ({
+      traces: lines_over_rows(table, variables[quantity], range),
+      layout: {xaxis: axis(axis_label(table.variables[0])), yaxis: axis(axis_label(variables[quantity])),
+               hovermode: variables[quantity].labels.length > 8 ? "closest" : "x unified"},
+    }),
+  });
+}
+
+function phase_portrait(table, position, velocity) {
+  const columns = columns_of(table, 1);
+  return make_figure({
+    caption: `Phase portrait: velocity against position. ${window_text(table)}${shortened(position)}`, height: 440,
+    draw: () => ({
+      traces: columns[position.index].map((x, label) => ({
+        type: "scatter", mode: "lines", x, y: columns[velocity.index][label], name: position.labels[label],
+        line: {...line_style(label), width: 1.3}, showlegend: true,
+      })),
+      layout: {xaxis: axis(axis_label(position)), yaxis: axis(axis_label(velocity))},
+    }),
+  });
+}
+
+/** The relative displacement of a slider's ends: kept in the results, or slip + force / stiffness. */
+function relative_displacement(table, force, label) {
+  const columns = columns_of(table, 1);
+  const kept = variable_of(table, "displacement");
+  if (kept && kept.dimension === force.dimension) {
+    return {title: "Relative displacement [m]", values: columns[kept.index][label]};
+  }
+  const slip = variable_of(table, "slip");
+  const stiffness = (table.attributes.slider_stiffness ?? "").split(/[\s,]+/).map(Number)[label];
+  if (stiffness > 0) {
+    const forces = columns[force.index][label];
+    return {title: "Relative displacement [m]",
+            values: columns[slip.index][label].map((value, row) => value + forces[row] / stiffness)};
+  }
+  return {title: "Slip [m]", values: columns[slip.index][label]};
+}
+
+function hysteresis_loops(table, force) {
+  const most = 12;
+  const columns = columns_of(table, 1);
+  const shown = Math.min(most, columns[force.index].length);
+  return element("div", {class: "pair"}, columns[force.index].slice(0, shown).map((y, label) => {
+    const displacement = relative_displacement(table, force, label);
+    const rest = label === 0 && force.label_count > shown
+      ? ` The first ${shown} of ${count_text(force.label_count)} sliders have a figure.` : "";
+    return make_figure({
+      caption: `Hysteresis loop of ${force.labels[label]}. ${window_text(table)}${rest}`, height: 320, is_small: true,
+      draw: () => ({
+        traces: [{type: "scatter", mode: "lines", x: displacement.values, y, name: force.labels[label],
+                  line: {...line_style(label), dash: "solid"}, showlegend: true}],
+        layout: {xaxis: axis(displacement.title), yaxis: axis(axis_label(force))},
+      }),
+    });
+  }));
+}
+
+// Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
+const ledger_panels = [
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated"], domain: [0.60, 1.0]},
+  {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored"], domain: [0.24, 0.54]},
+  {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
+];
+
+function energy_ledger(table) {
+  const named = ledger_panels.flatMap((panel) => panel.names);
+  const others = table.variables.slice(1).map((variable) => variable.name).filter((name) => !named.includes(name));
+  const choosers = table.window ? [whole_or_window] : [];
+  return make_figure({
+    caption: "Energy ledger: work of the loads and what dampers and sliders dissipated since the start (top), energy stored " +
+      "(middle), and the residue of the integration that closes the balance (bottom, on its own scale). " +
+      overview_text(table),
+    height: 620, choosers,
+    draw: ([range = 0]) => {
+      const columns = columns_of(table, range);
+      const layout = {xaxis: axis(axis_label(table.variables[0]), {anchor: "y3"}), hovermode: "x"};
+      const traces = [];
+      ledger_panels.forEach((panel, index) => {
+        const suffix = index === 0 ? "" : String(index + 1);
+        layout[`yaxis${suffix}`] = axis(panel.title, {domain: panel.domain});
+        for (const name of index === 1 ? [...panel.names, ...others] : panel.names) {
+          const variable = variable_of(table, name);
+          if (!variable) continue;
+          traces.push({type: "scatter", mode: "lines", x: columns[0][0], y: columns[variable.index][0],
+                       yaxis: `y${suffix}`, name: phrase(name), line: line_style(traces.length)});
+        }
+      });
+      return {traces, layout};
+    },
+  });
+}
+
+/** Key numbers: a row a label, three columns a quantity. */
+function key_numbers(table, variables, caption) {
+  const columns = [{title: phrase(variables[0].dimension), is_text: true}];
+  const groups = [{title: "", span: 1}];
+  for (const variable of variables) {
+    groups.push({title: axis_label(variable), span: 3});
+    columns.push({title: "largest"}, {title: "rms"}, {title: "late amplitude"});
+  }
+  const rows = variables[0].labels.map((label, row) => [
+    label, ...variables.flatMap((variable) => table.key_numbers[variable.index][row].map((value) => number_node(value))),
+  ]);
+  return make_table({caption: caption + shortened(variables[0]), columns, groups, rows});
+}
+
+function is_transient(analysis) {
+  const table = analysis.tables[0];
+  return table && table.name === "" && table.row_dimension === "time" && variable_of(table, "position") !== null;
+}
+
+function write_transient(chapter, analysis) {
+  const [table] = analysis.tables;
+  const of = (names) => names.map((name) => variable_of(table, name)).filter((variable) => variable && variable.labels.length);
+  const motion = of(["position", "velocity", "acceleration"]);
+  const sliders = of(["force", "slip", "displacement"]);
+  const ledger = analysis.tables.find((candidate) => candidate.name === "energy");
+  if (motion.length) {
+    add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
+    if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
+  }
+  if (sliders.length) {
+    add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders"));
+    const force = variable_of(table, "force");
+    if (force && (variable_of(table, "slip") || variable_of(table, "displacement"))) {
+      add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
+    }
+  }
+  if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
+  if (table.key_numbers) {
+    const meaning = " Largest absolute value and root mean square over all rows; late amplitude: half of peak to peak over " +
+      "the last tenth of the duration.";
+    const numbers = [];
+    if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
+    if (sliders.length) numbers.push(key_numbers(table, sliders, `Sliders.${meaning}`));
+    add_section(chapter, "Key numbers", numbers);
+  }
+}

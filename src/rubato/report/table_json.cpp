@@ -1,0 +1,149 @@
+#include <rubato/report/digest.hpp>
+#include <rubato/report/json.hpp>
+#include <rubato/report/table_json.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace rubato::report {
+namespace {
+
+// Enough that a column of the row coordinate resolves steps of 1e-7 of its range; the others are for the eye.
+constexpr int coordinate_digits = 10;
+constexpr int value_digits = 7;
+// Rows read at once: 24 labels of them are 1.5 MB.
+constexpr std::size_t piece_rows = 8192;
+
+using Columns = std::vector<std::vector<double>>;  // [labels][rows]
+
+/// Calls use(row coordinate, values of the labels) for the rows [first, first + rows), which it reads in pieces.
+template <class Use>
+void for_each_row(const TableSource& table, std::size_t variable, std::size_t first, std::size_t rows,
+                  std::size_t labels, Use use) {
+  if (labels == 0) return;
+  std::vector<double> piece(std::min(piece_rows, rows) * labels), coordinates(std::min(piece_rows, rows));
+  for (std::size_t done = 0; done < rows;) {
+    const std::size_t count = std::min(piece_rows, rows - done);
+    const std::span<double> values(piece.data(), count * labels);
+    table.read(0, first + done, count, 1, std::span(coordinates).first(count));
+    table.read(variable, first + done, count, labels, values);
+    for (std::size_t i = 0; i < count; ++i) use(coordinates[i], values.subspan(i * labels, labels));
+    done += count;
+  }
+}
+
+double coordinate_of_row(const TableSource& table, std::size_t row) {
+  double value = 0.0;
+  table.read(0, row, 1, 1, {&value, 1});
+  return value;
+}
+
+Columns read_columns(const TableSource& table, std::size_t variable, std::size_t first, std::size_t rows,
+                     std::size_t labels) {
+  Columns columns(labels);
+  for_each_row(table, variable, first, rows, labels, [&](double, std::span<const double> values) {
+    for (std::size_t label = 0; label < labels; ++label) columns[label].push_back(values[label]);
+  });
+  return columns;
+}
+
+std::string columns_json(const Columns& columns, int digits) {
+  std::string out = "[";
+  for (const auto& column : columns) out += (out.size() > 1 ? "," : "") + json_numbers(column, digits);
+  return out + ']';
+}
+
+std::string variable_json(const Variable& variable, std::size_t labels) {
+  const std::span<const std::string> shown(variable.labels.data(), variable.dimension.empty() ? 0 : labels);
+  return fmt::format(
+      R"({{"name":{},"unit":{},"description":{},"dimension":{},"labels":{},"label_count":{},"categories":{}}})",
+      json_string(variable.name), json_string(variable.unit), json_string(variable.description),
+      json_string(variable.dimension), json_strings(shown), variable.labels.size(), json_strings(variable.categories));
+}
+
+/// Overview of one variable, and its key numbers where they are asked for.
+struct Digest {
+  Columns columns;
+  std::string key_numbers = "null";
+};
+
+Digest digest(const TableSource& table, std::size_t variable, std::size_t labels, bool is_timed, bool is_envelope,
+              const Extent& extent) {
+  const std::size_t rows = table.rows();
+  const bool has_key_numbers = is_timed && !table.variables()[variable].dimension.empty();
+  std::vector<Envelope> envelopes(is_envelope ? labels : 0, Envelope(rows, extent.buckets));
+  std::vector<KeyNumbers> numbers;
+  if (has_key_numbers) {
+    numbers.assign(labels, KeyNumbers(coordinate_of_row(table, 0), coordinate_of_row(table, rows - 1)));
+  }
+  Columns columns(labels);
+  for_each_row(table, variable, 0, rows, labels, [&](double coordinate, std::span<const double> values) {
+    for (std::size_t label = 0; label < labels; ++label) {
+      if (is_envelope) {
+        envelopes[label].add(values[label]);
+      } else {
+        columns[label].push_back(values[label]);
+      }
+      if (has_key_numbers) numbers[label].add(coordinate, values[label]);
+    }
+  });
+  for (std::size_t label = 0; label < envelopes.size(); ++label) columns[label] = envelopes[label].points();
+  Digest out{std::move(columns)};
+  if (has_key_numbers) {
+    out.key_numbers = "[";
+    for (const KeyNumbers& number : numbers) {
+      const double values[] = {number.largest(), number.rms(), number.late_amplitude()};
+      out.key_numbers += (out.key_numbers.size() > 1 ? "," : "") + json_numbers(values);
+    }
+    out.key_numbers += ']';
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string attributes_json(const Attributes& attributes) {
+  std::string out = "{";
+  for (const auto& [name, value] : attributes) {
+    if (out.size() > 1) out += ',';
+    out += json_string(name) + ':' + json_string(value);
+  }
+  return out + '}';
+}
+
+std::string table_json(const TableSource& table, const Extent& extent) {
+  const std::size_t rows = table.rows();
+  const bool is_envelope = rows > extent.whole_up_to;
+  const bool is_timed = table.row_dimension() == "time" && rows > 0 && !table.variables().empty();
+  const std::size_t window_rows = is_envelope ? std::min(extent.window_rows, rows) : 0;
+
+  std::string variables = "[", overview = "[", window = "[", key_numbers = "[";
+  for (std::size_t v = 0; v < table.variables().size(); ++v) {
+    const Variable& variable = table.variables()[v];
+    const std::size_t labels = std::min(variable.width(), extent.labels);
+    const int digits = v == 0 ? coordinate_digits : value_digits;
+    Digest kept;
+    if (v == 0 && is_envelope) {
+      kept.columns.emplace_back();
+      for (const std::size_t row : Envelope::rows_of_points(rows, extent.buckets)) {
+        kept.columns.front().push_back(coordinate_of_row(table, row));
+      }
+    } else {
+      kept = digest(table, v, labels, is_timed, is_envelope, extent);
+    }
+    const char* comma = v > 0 ? "," : "";
+    variables += comma + variable_json(variable, labels);
+    overview += comma + columns_json(kept.columns, digits);
+    key_numbers += comma + kept.key_numbers;
+    window += comma + columns_json(read_columns(table, v, rows - window_rows, window_rows, labels), digits);
+  }
+  return fmt::format(
+      R"({{"name":{},"row_dimension":{},"rows":{},"attributes":{},"variables":{}],"overview":{}],"is_envelope":{},)"
+      R"("window":{},"window_first_row":{},"key_numbers":{}}})",
+      json_string(table.name()), json_string(table.row_dimension()), rows, attributes_json(table.attributes()),
+      variables, overview, is_envelope, window_rows > 0 ? window + ']' : "null", rows - window_rows,
+      is_timed ? key_numbers + ']' : "null");
+}
+
+}  // namespace rubato::report

@@ -1,0 +1,66 @@
+#include <rubato/core/error.hpp>
+#include <rubato/report/json.hpp>
+#include <rubato/report/page.hpp>
+#include <rubato/report/results_tables.hpp>
+#include <rubato/report/table_json.hpp>
+#include <rubato/report/theory_json.hpp>
+#include <rubato/report/write_report.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace rubato::report {
+namespace {
+
+std::string analysis_json(const AnalysisTables& analysis) {
+  std::string tables;
+  for (const auto& table : analysis.tables) tables += (tables.empty() ? "" : ",") + table_json(*table);
+  return fmt::format(R"({{"name":{},"attributes":{},"tables":[{}]}})", json_string(analysis.name),
+                     attributes_json(analysis.attributes), tables);
+}
+
+/// Writes beside `file` and moves it there, so that a full disk leaves what was there before.
+void replace_file(const std::filesystem::path& file, std::string_view content) {
+  const std::filesystem::path partial = file.string() + ".partial";
+  const auto fail = [&](const std::string& reason) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw OutputError(fmt::format("cannot write {}: {}", file.string(), reason));
+  };
+  std::FILE* stream = std::fopen(partial.c_str(), "wb");
+  if (stream == nullptr) fail(std::strerror(errno));
+  bool is_written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
+  int reason = errno;
+  // A full disk may be heard of only when the buffers are emptied.
+  if (std::fclose(stream) != 0 && is_written) {
+    is_written = false;
+    reason = errno;
+  }
+  if (!is_written) fail(std::strerror(reason));
+  std::error_code error;
+  std::filesystem::rename(partial, file, error);
+  if (error) fail(error.message());
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& results_nc, const std::filesystem::path& html) {
+  const ResultsTables results(results_nc);
+  std::string title = results_nc.filename().string(), analyses;
+  for (const auto& [name, value] : results.attributes()) {
+    if (name == "title" && !value.empty()) title = value;
+  }
+  for (const AnalysisTables& analysis : results.analyses()) {
+    analyses += (analyses.empty() ? "" : ",\n") + analysis_json(analysis);
+  }
+  const std::string data = fmt::format("{{\"results_file\":{},\"attributes\":{},\"theory\":{},\"analyses\":[\n{}]}}",
+                                       json_string(results_nc.filename().string()),
+                                       attributes_json(results.attributes()), theory_json(), analyses);
+  replace_file(html, html_page(title, data));
+}
+
+}  // namespace rubato::report

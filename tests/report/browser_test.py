@@ -1,0 +1,177 @@
+"""Opens a report in headless Chromium and uses it as a reader would.
+
+Usage: browser_test.py REPORT.html. Python's standard library speaks WebDriver to chromedriver. Exit status 77 (skipped)
+where Chromium or chromedriver is not installed.
+"""
+
+import base64
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import urllib.request
+
+ELEMENT_KEY = "element-6066-11e4-a52e-4f735466cecf"  # of the WebDriver standard
+
+
+class Browser:
+    """One headless browser, without a network."""
+
+    def __init__(self, folder):
+        self.driver = subprocess.Popen(
+            [shutil.which("chromedriver"), "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        for line in self.driver.stdout:
+            started = re.search(r"started successfully on port (\d+)", line)
+            if started:
+                self.base = f"http://127.0.0.1:{started.group(1)}"
+                break
+        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                     "--disable-dev-shm-usage", "--disable-background-networking", "--disable-component-update",
+                     "--disable-sync", "--host-resolver-rules=MAP * ~NOTFOUND", "--window-size=1366,768",
+                     f"--user-data-dir={folder}/profile"]
+        capabilities = {"goog:chromeOptions": {"binary": shutil.which("chromium"), "args": arguments},
+                        "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+        self.session = ""
+        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        self.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+
+    def call(self, verb, path, body=None):
+        request = urllib.request.Request(self.base + self.session + path, method=verb,
+                                         data=None if body is None else json.dumps(body).encode(),
+                                         headers={"Content-Type": "application/json"})
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            return json.load(answer)["value"]
+
+    def command(self, name, parameters):
+        """A command of the DevTools protocol."""
+        return self.call("POST", "/goog/cdp/execute", {"cmd": name, "params": parameters})
+
+    def script(self, code, *arguments):
+        return self.call("POST", "/execute/sync", {"script": code, "args": list(arguments)})
+
+    def click(self, selector):
+        found = self.call("POST", "/element", {"using": "css selector", "value": selector})
+        self.script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", found)
+        self.call("POST", f"/element/{found[ELEMENT_KEY]}/click", {})
+
+    def log(self, kind):
+        return self.call("POST", "/se/log", {"type": kind})
+
+    def wait(self, code, seconds=20):
+        """The value of a script as soon as it is true."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            value = self.script(code)
+            if value:
+                return value
+            time.sleep(0.05)
+        raise AssertionError(f"never became true: {code}")
+
+    def close(self):
+        try:
+            self.call("DELETE", "")
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubato-report-"))
+        cls.browser = Browser(cls.folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def setUp(self):
+        for kind in ("browser", "performance"):  # what the browser's own first page said
+            self.browser.log(kind)
+        self.browser.call("POST", "/url", {"url": page.as_uri()})
+        self.browser.wait("return document.querySelectorAll('figure').length > 0")
+
+    def tearDown(self):
+        complaints = [entry for entry in self.browser.log("browser") if entry["level"] != "INFO"]
+        self.assertEqual(complaints, [], "the console is silent")
+        for entry in self.browser.log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                self.assertRegex(message["params"]["request"]["url"], "^(file|data|blob):", "nothing is fetched")
+
+    def test_figures_are_drawn_when_they_come_into_view(self):
+        count = self.browser.script("return document.querySelectorAll('figure').length")
+        self.assertGreater(count, 15)
+        last_is_drawn = f"return document.querySelector('#figure-{count} .plot .main-svg') !== null"
+        self.assertFalse(self.browser.script(last_is_drawn), "figures far away wait")
+        for number in range(1, count + 1):
+            self.browser.script("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})",
+                                f"figure-{number}")
+            self.browser.wait(f"const figure = document.querySelector('#figure-{number} .plot');"
+                              "const lines = figure.querySelectorAll('path.js-line, .contourlevel path, path.point');"
+                              "return [...lines].some((line) => (line.getAttribute('d') || '').length > 20)")
+            titles = self.browser.script(
+                f"return [...document.querySelectorAll('#figure-{number} .xtitle, #figure-{number} [class*=ytitle]')]"
+                ".map((title) => title.textContent)")
+            self.assertGreaterEqual(len(titles), 2)
+            for title in titles:
+                self.assertRegex(title, r" \[.+\]$", "every axis names its unit")
+
+    def test_a_click_in_the_legend_hides_a_line(self):
+        lines = "return document.querySelectorAll('#figure-1 .scatterlayer .trace').length"
+        before = self.browser.wait(lines)
+        self.browser.click("#figure-1 .legend .traces:first-child .legendtoggle")
+        self.browser.wait(f"{lines} === {before - 1}")
+        self.browser.click("#figure-1 .legend .traces:first-child .legendtoggle")
+        self.browser.wait(f"{lines} === {before}")
+
+    def test_a_button_chooses_the_quantity(self):
+        title = "return document.querySelector('#figure-1 .ytitle')?.textContent"
+        self.assertEqual(self.browser.wait(title), "Position [m]")
+        self.browser.click("#figure-1 .chooser button:nth-child(2)")
+        self.assertEqual(self.browser.wait(title), "Velocity [m/s]")
+        self.assertEqual(self.browser.script(
+            "return document.querySelectorAll('#figure-1 .chooser [aria-pressed=true]')[0].textContent"), "Velocity")
+
+    def test_a_figure_is_downloaded_as_svg(self):
+        self.browser.wait("return document.querySelector('#figure-1 .main-svg') !== null")
+        self.browser.click("#figure-1 .save")
+        file = self.folder / "figure-1.svg"
+        end = time.monotonic() + 20
+        while not file.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        text = file.read_text()
+        self.assertTrue(text.startswith("<svg"), text[:80])
+        self.assertIn("Position [m]", text)
+
+    def test_hostile_names_are_shown_as_they_are(self):
+        self.assertEqual(self.browser.script("return document.title"), "Two blade sectors and an under-platform damper")
+        text = self.browser.script("return document.querySelector('main').textContent")
+        self.assertIn("bl\"ade</script><b>\u03a9", text)
+        self.assertIn("</script><script>document.title = 'taken'</script>", text)
+
+    def test_a_failure_is_told_first_with_its_message(self):
+        self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))
+
+    def test_paper_shows_every_figure(self):
+        pdf = base64.b64decode(self.browser.command("Page.printToPDF", {"preferCSSPageSize": True})["data"])
+        self.assertTrue(pdf.startswith(b"%PDF"))
+        if len(sys.argv) > 1:
+            pathlib.Path(sys.argv[1]).write_bytes(pdf)
+        missing = self.browser.script(
+            "return [...document.querySelectorAll('figure')].filter((figure) => !figure.querySelector('.main-svg')).length")
+        self.assertEqual(missing, 0)
+
+
+if __name__ == "__main__":
+    if not (shutil.which("chromium") and shutil.which("chromedriver")):
+        print("skipped: chromium or chromedriver is not installed")
+        sys.exit(77)
+    page = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main(argv=["browser_test"], verbosity=2)

@@ -1,0 +1,95 @@
+#include <rubato/core/error.hpp>
+#include <rubato/report/write_report.hpp>
+
+#include "report/sample_results.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+
+namespace rubato::report {
+namespace {
+
+using testing::HasSubstr;
+
+class WriteReport : public testing::Test {
+ protected:
+  WriteReport() {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("report_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~WriteReport() override { std::filesystem::remove_all(folder_); }
+
+  static std::string text_of(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(WriteReport, ShowsTitleStudyAndTablesOfTheResults) {
+  {
+    test::ResultsFileWriter file(folder_ / "results.nc");
+    file.set_attribute("title", "One <mass>");
+    file.set_attribute("study", "[[coordinate]]\nname = \"</script>\"\n");
+    file.add({"run",
+              "",
+              "time",
+              {{"time", "s", "", "", {}}, {"position", "m", "", "coordinate", {"mass"}}},
+              {{"status", "done"}}},
+             {{0.0, 1.0}, {0.1, std::nan("")}, {0.2, 0.25}});
+  }
+  write_report(folder_ / "results.nc", folder_ / "report.html");
+  const std::string page = text_of(folder_ / "report.html");
+  EXPECT_THAT(page, HasSubstr("<title>One &lt;mass&gt;</title>"));
+  EXPECT_THAT(page, HasSubstr(R"(name = \"\u003c/script\u003e\")"));
+  EXPECT_THAT(page, HasSubstr(R"("overview":[[[0,0.1,0.2]],[[1,null,0.25]]])"));
+  EXPECT_THAT(page, HasSubstr(R"("labels":["mass"])"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html.partial"));
+}
+
+TEST_F(WriteReport, ReplacesAnOlderPage) {
+  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  std::ofstream(folder_ / "report.html") << "older";
+  write_report(folder_ / "results.nc", folder_ / "report.html");
+  EXPECT_THAT(text_of(folder_ / "report.html"), HasSubstr(R"("analyses":[)"));
+}
+
+TEST_F(WriteReport, NamesResultsThatCannotBeRead) {
+  std::ofstream(folder_ / "results.nc") << "not netCDF";
+  try {
+    write_report(folder_ / "results.nc", folder_ / "report.html");
+    FAIL() << "no error";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), HasSubstr((folder_ / "results.nc").string()));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html"));
+}
+
+TEST_F(WriteReport, SaysWhyThePageCannotBeWritten) {
+  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  try {
+    write_report(folder_ / "results.nc", folder_ / "missing" / "report.html");
+    FAIL() << "no error";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("No such file or directory"));
+  }
+}
+
+TEST_F(WriteReport, KeepsTheOlderPageOnAFullDisk) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  std::ofstream(folder_ / "report.html") << "older";
+  std::filesystem::create_symlink("/dev/full", folder_ / "report.html.partial");
+  EXPECT_THROW(write_report(folder_ / "results.nc", folder_ / "report.html"), OutputError);
+  EXPECT_EQ(text_of(folder_ / "report.html"), "older");
+}
+
+}  // namespace
+}  // namespace rubato::report
