@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace rubato::analysis {
 
@@ -31,6 +33,7 @@ enum class RunStatus { done, failed, interrupted };
 struct RunReport {
   RunStatus status = RunStatus::done;
   std::string message;
+  std::vector<std::pair<std::string, std::string>> statistics;  ///< steps, factorisations, ...: kept with the results
 };
 
 }  // namespace rubato::analysis

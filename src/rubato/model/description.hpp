@@ -45,12 +45,14 @@ using Between = std::array<std::string, 2>;
 
 struct SpringDescription {
   Between between;
+  std::array<Location, 2> between_where;
   Quantity stiffness;  ///< [N/m]
   Location where;
 };
 
 struct DamperDescription {
   Between between;
+  std::array<Location, 2> between_where;
   Quantity damping;  ///< [N s/m]
   Location where;
 };
@@ -76,6 +78,7 @@ using DampingDescription = std::variant<std::monostate, ModalDamping, RayleighDa
 struct SliderDescription {
   std::string name;
   Between between;
+  std::array<Location, 2> between_where;
   Quantity stiffness;             ///< kT [N/m]
   Quantity friction_coefficient;  ///< mu [-]
   Quantity normal_load;           ///< N [N]

@@ -2,6 +2,7 @@
 
 #include <rubato/numerics/expression.hpp>
 
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct TableLaw {
   std::vector<double> times;                ///< [s]
   std::vector<double> values;
   Beyond beyond = Beyond::error;  ///< error: an analysis refuses to run beyond the table before it starts
+  std::string source;             ///< the file, for messages
 };
 
 using TimeLaw = std::variant<HarmonicLaw, FormulaLaw, TableLaw>;

@@ -1,0 +1,62 @@
+#include <rubato/analysis/energy_ledger.hpp>
+
+namespace rubato::analysis {
+
+Energy energy_of(const system::LocallyNonlinear& system, const system::State& state, Vector& product) {
+  Energy energy;
+  product.noalias() = system.mass() * state.v;
+  energy.kinetic = 0.5 * state.v.dot(product);
+  product.noalias() = system.stiffness() * state.q;
+  energy.strain = 0.5 * state.q.dot(product);
+  for (Index i = 0; i < system.slider_count(); ++i)
+    energy.slider_stored +=
+        0.5 * state.slider_force[i] * state.slider_force[i] / system.sliders()[static_cast<std::size_t>(i)].stiffness;
+  return energy;
+}
+
+EnergyLedger::EnergyLedger(const system::LocallyNonlinear& system)
+    : system_(system), loads_(system.loads()), travel_(system.size()), product_(system.size()), force_(system.size()) {}
+
+void EnergyLedger::start(const system::State& state) {
+  const Energy now = energy_of(system_, state, product_);
+  sums_ = {};
+  sums_.start = now.kinetic + now.strain + now.slider_stored;
+}
+
+EnergyLedger::Booking EnergyLedger::booking(const system::State& before, const system::State& after) {
+  Booking booked{0.0, 0.0, 0.0};
+  travel_ = before.v + after.v;
+  product_.noalias() = system_.damping() * travel_;
+  travel_ = after.q - before.q;
+  booked.damper = 0.5 * product_.dot(travel_);
+  loads_.evaluate(before.t, force_, model::Side::right);
+  booked.load = force_.dot(travel_);
+  loads_.evaluate(after.t, force_, model::Side::left);
+  booked.load = 0.5 * (booked.load + force_.dot(travel_));
+  for (Index i = 0; i < system_.slider_count(); ++i) {
+    const double change = after.slider_force[i] - before.slider_force[i];
+    const double slip =
+        system_.relative_displacement(i, travel_) - change / system_.sliders()[static_cast<std::size_t>(i)].stiffness;
+    booked.slider += 0.5 * (before.slider_force[i] + after.slider_force[i]) * slip;
+  }
+  return booked;
+}
+
+void EnergyLedger::add_step(const system::State& before, const system::State& after) {
+  const Booking booked = booking(before, after);
+  sums_.damper_dissipated += booked.damper;
+  sums_.slider_dissipated += booked.slider;
+  sums_.load_work += booked.load;
+}
+
+Energy EnergyLedger::at(const system::State& before, const system::State& now) {
+  const Booking part = &before == &now ? Booking{0.0, 0.0, 0.0} : booking(before, now);
+  Energy energy = energy_of(system_, now, product_);
+  energy.start = sums_.start;
+  energy.damper_dissipated = sums_.damper_dissipated + part.damper;
+  energy.slider_dissipated = sums_.slider_dissipated + part.slider;
+  energy.load_work = sums_.load_work + part.load;
+  return energy;
+}
+
+}  // namespace rubato::analysis

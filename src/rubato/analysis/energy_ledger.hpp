@@ -1,0 +1,56 @@
+#pragma once
+
+#include <rubato/integrate/load_values.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::analysis {
+
+/// Where the energy is and where it went, in joules, since the start of a run.
+struct Energy {
+  double kinetic = 0.0;            ///< v^T M v / 2
+  double strain = 0.0;             ///< q^T K q / 2
+  double slider_stored = 0.0;      ///< sum of fc^2 / (2 kT)
+  double damper_dissipated = 0.0;  ///< by C
+  double slider_dissipated = 0.0;  ///< by slip
+  double load_work = 0.0;
+  double start = 0.0;  ///< kinetic + strain + slider_stored at the start
+
+  /// What the method itself made or lost: it closes the balance. Round-off for the exact flow, and for average
+  /// acceleration.
+  double residue() const {
+    return kinetic + strain + slider_stored + damper_dissipated + slider_dissipated - load_work - start;
+  }
+};
+
+/// Books the steps of a method. Over a step with dq = q1 - q0:
+///
+///   dampers (C v0 + C v1)/2 . dq,   loads (f0 + f1)/2 . dq,   sliders (fc0 + fc1)/2 . d(slip),   slip = u - fc/kT
+///
+/// With average acceleration v0 + v1 = 2 dq/h, and the balance closes to round-off whatever the sliders do.
+class EnergyLedger {
+ public:
+  explicit EnergyLedger(const system::LocallyNonlinear& system);
+
+  void start(const system::State& state);
+  /// Adds a step to the sums.
+  void add_step(const system::State& before, const system::State& after);
+  /// The ledger at `now`, which lies in the step after `before`, the last state booked; books nothing. `now` may be
+  /// `before`.
+  Energy at(const system::State& before, const system::State& now);
+
+ private:
+  struct Booking {
+    double damper, slider, load;
+  };
+  Booking booking(const system::State& before, const system::State& after);
+
+  const system::LocallyNonlinear& system_;
+  system::Loads loads_;
+  Vector travel_, product_, force_;
+  Energy sums_;
+};
+
+/// Kinetic, strain and slider-stored energy of a state; the other entries are zero. `product` [n] is overwritten.
+Energy energy_of(const system::LocallyNonlinear& system, const system::State& state, Vector& product);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <rubato/analysis/run_context.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::analysis {
+
+/// What an analysis would do, in a line for people, and how much it would write.
+struct AnalysisOutline {
+  std::string summary;          ///< "transient, generalized_alpha, 12000 steps of 0.005 s"
+  double expected_bytes = 0.0;  ///< of the results, roughly
+};
+
+/// Evaluates an analysis and checks that it can run on a system. Throws InvalidInput.
+AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
+                               const numerics::Parameters& parameters);
+
+/// Runs it: rows go to the sink, then its conclusion. Failures of the mathematics and Ctrl-C are in the report; throws
+/// InvalidInput before anything is written, and OutputError when results cannot be written.
+RunReport run_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
+                       const numerics::Parameters& parameters, RunContext& context);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,163 @@
+#include <rubato/analysis/interpolation.hpp>
+#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/transient_recorder.hpp>
+#include <rubato/integrate/driver.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rubato::analysis {
+namespace {
+
+using Kind = model::OutputDescription::Kind;
+
+/// Books every accepted step, records those that are asked for, and hears of Ctrl-C.
+class TransientObserver final : public integrate::Observer {
+ public:
+  TransientObserver(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder,
+                    RunContext& context)
+      : plan_(plan),
+        recorder_(recorder),
+        context_(context),
+        ledger_(system),
+        interpolation_(system),
+        between_(system.start()),
+        steps_a_report_(system.size() > 1000 ? 1 : 256) {}
+
+  void start(const system::State& state) {
+    ledger_.start(state);
+    // Requested times may begin later than the run.
+    if (plan_.output == Kind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
+    record(state, state);
+    ++next_;
+  }
+
+  bool accepted(const system::State& before, const system::State& after) override {
+    ++steps_;
+    last_recorded_ = false;
+    if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
+    if (plan_.energy) ledger_.add_step(before, after);
+    if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
+      record(after, after);
+    if (steps_ % steps_a_report_ == 0) context_.progress.advance(static_cast<double>(steps_));
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+
+  /// The state in which the march ended is worth keeping even between outputs.
+  void finish(const system::State& state) {
+    if (plan_.output == Kind::every && !last_recorded_ && steps_ > 0) record(state, state);
+    context_.progress.advance(static_cast<double>(steps_));
+  }
+
+  long steps() const { return steps_; }
+
+ private:
+  void record(const system::State& before, const system::State& now) {
+    if (plan_.energy) {
+      const Energy energy = ledger_.at(before, now);
+      recorder_.record(now, &energy);
+    } else {
+      recorder_.record(now, nullptr);
+    }
+    last_recorded_ = true;
+  }
+
+  double next_time() const {
+    if (plan_.output == Kind::interval) return static_cast<double>(next_) * plan_.interval;
+    return next_ < static_cast<long>(plan_.times.size()) ? plan_.times[static_cast<std::size_t>(next_)] : HUGE_VAL;
+  }
+
+  void record_between(const system::State& before, const system::State& after) {
+    const double round_off = 1e-9 * (after.t - before.t);
+    bool taken = false;
+    for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
+      ++next_;
+      if (t >= after.t - round_off) {
+        record(before, after);
+        continue;
+      }
+      if (!taken) interpolation_.take(before, after);
+      taken = true;
+      interpolation_.at(t, between_);
+      record(before, between_);
+    }
+  }
+
+  const TransientPlan& plan_;
+  TransientRecorder& recorder_;
+  RunContext& context_;
+  EnergyLedger ledger_;
+  StepInterpolation interpolation_;
+  system::State between_;
+  long steps_a_report_, steps_ = 0, next_ = 0;
+  bool last_recorded_ = false;
+};
+
+std::string reason(const integrate::MarchReport& report, const system::LocallyNonlinear& system) {
+  const auto coordinate = [&](Index i) {
+    return i >= 0 ? fmt::format(" at coordinate \"{}\"", system.coordinates()[static_cast<std::size_t>(i)]) : "";
+  };
+  std::string what, remedy;
+  switch (report.step.outcome) {
+    case integrate::StepOutcome::not_finite:
+      what = "a number that is not finite appeared" + coordinate(report.step.worst);
+      remedy =
+          "look at the loads at that time, and whether the response grew before it (a smaller step, or an "
+          "unconditionally stable method)";
+      break;
+    case integrate::StepOutcome::not_converged:
+      what =
+          fmt::format("the sliders found no consistent state (worst: \"{}\")",
+                      report.step.worst >= 0 ? system.sliders()[static_cast<std::size_t>(report.step.worst)].name : "");
+      remedy = "take a smaller step";
+      break;
+    case integrate::StepOutcome::singular:
+      what = "the effective matrix of the step cannot be factorised";
+      remedy = "look for a negative stiffness or damping, or take a smaller step";
+      break;
+    case integrate::StepOutcome::accepted:
+      break;
+  }
+  return fmt::format("at t = {} s with the step {} s {}; {}", report.failed_at, report.failed_step, what, remedy);
+}
+
+}  // namespace
+
+RunReport run_transient(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
+                        RunContext& context) {
+  if (std::holds_alternative<integrate::Exact>(plan.method.formula))
+    return run_exact_transient(name, plan, system, context);
+  const auto stepper = integrate::make_stepper(plan.method, system);
+  TransientRecorder recorder(name, plan, system, context.sink);
+  TransientObserver observer(plan, system, recorder, context);
+  system::State state = integrate::consistent_start(system, system.start());
+  RunReport run;
+  integrate::MarchReport report;
+  context.progress.begin(name, std::ceil(plan.duration / plan.step), "steps");
+  if (!state.auxiliary_acceleration.allFinite()) {
+    report.end = integrate::MarchEnd::failed;
+    report.step.outcome = integrate::StepOutcome::not_finite;
+    report.failed_step = plan.step;
+    for (Index i = system.size() - 1; i >= 0; --i)
+      if (!std::isfinite(state.auxiliary_acceleration[i])) report.step.worst = i;
+  } else {
+    observer.start(state);
+    report = integrate::march(*stepper, state, plan.step, plan.duration, &observer);
+    observer.finish(state);
+  }
+  context.progress.end();
+  if (report.end == integrate::MarchEnd::failed) {
+    run.status = RunStatus::failed;
+    run.message = reason(report, system);
+  } else if (report.end == integrate::MarchEnd::stopped && state.t < plan.duration) {
+    run.status = RunStatus::interrupted;
+    run.message = fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration);
+  }
+  run.statistics = {{"steps", std::to_string(report.steps)},
+                    {"factorisations", std::to_string(stepper->factorisations())},
+                    {"rows", std::to_string(recorder.rows())}};
+  return run;
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,158 @@
+#include <rubato/analysis/transient_plan.hpp>
+#include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/stability.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::analysis {
+namespace {
+
+using Kind = model::OutputDescription::Kind;
+
+Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
+
+double positive(const model::Quantity& quantity, const numerics::Parameters& parameters, const std::string& what,
+                const Location& where) {
+  const double value = model::evaluate(quantity, parameters, what);
+  if (!(value > 0.0))
+    throw InvalidInput(place(quantity.where, where), fmt::format("{} must be positive, got {}", what, value));
+  return value;
+}
+
+void require_tables_to_reach(const system::LocallyNonlinear& system, double end, const Location& where) {
+  for (const auto& term : system.loads().terms()) {
+    const auto* table = std::get_if<model::TableLaw>(&term.law);
+    if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
+    if (table->times.front() <= 0.0 && table->times.back() >= end * (1.0 - 1e-12)) continue;
+    throw InvalidInput(
+        where, fmt::format("the table {} reaches from {} s to {} s, the analysis from 0 s to {} s; extend "
+                           "it, or say beyond = \"zero\" or \"hold\" where it is used",
+                           table->source.empty() ? "of a load" : "\"" + table->source + "\"", table->times.front(),
+                           table->times.back(), end));
+  }
+}
+
+void require_stable(const TransientPlan& plan, const system::LocallyNonlinear& system, const Location& where) {
+  const integrate::ModelStability limit = integrate::stability_of(plan.method, system);
+  if (plan.step <= limit.step) return;
+  const std::string mode = fmt::format(
+      "mode {} of the model with all sliders stuck ({:.6g} rad/s, damping ratio {:.3g}, "
+      "largest at \"{}\")",
+      limit.mode, limit.angular_frequency, limit.damping_ratio, limit.largest_coordinate);
+  if (limit.step == 0.0)
+    throw InvalidInput(where, fmt::format("{} has no stable step for {}: every step makes it grow; take "
+                                          "\"generalized_alpha\", or set allow_unstable = true",
+                                          plan.method.name, mode));
+  throw InvalidInput(where, fmt::format("the step {} s is beyond the stability limit of {}, {:.6g} s, which {} sets; "
+                                        "take a smaller step, an unconditionally stable method such as "
+                                        "\"generalized_alpha\", or set allow_unstable = true",
+                                        plan.step, plan.method.name, limit.step, mode));
+}
+
+void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
+                 const Location& where) {
+  plan.output = output.kind;
+  const bool is_exact = plan.step == 0.0;
+  const double steps = is_exact ? 0.0 : std::ceil(plan.duration / plan.step);
+  switch (output.kind) {
+    case Kind::every_step:
+      plan.rows = steps + 1.0;
+      break;
+    case Kind::every:
+      if (is_exact)
+        throw InvalidInput(place(output.where, where),
+                           "output = { every = ... } counts steps, and the method exact takes none; say "
+                           "output = { interval = ... } or { times = [...] }");
+      if (output.every < 1)
+        throw InvalidInput(place(output.where, where), fmt::format("every must be at least 1, got {}", output.every));
+      plan.every = output.every;
+      plan.rows = std::floor(steps / output.every) + 2.0;
+      break;
+    case Kind::interval:
+      plan.interval = positive(output.interval, parameters, "interval", where);
+      plan.rows = std::floor(plan.duration / plan.interval) + 1.0;
+      break;
+    case Kind::times:
+      for (const auto& quantity : output.times) {
+        const double t = model::evaluate(quantity, parameters, "times");
+        const double last = plan.times.empty() ? -1.0 : plan.times.back();
+        if (!(t >= 0.0 && t <= plan.duration))
+          throw InvalidInput(place(quantity.where, where),
+                             fmt::format("times: {} s lies outside the run from 0 s to {} s", t, plan.duration));
+        if (!(t > last))
+          throw InvalidInput(place(quantity.where, where), fmt::format("times must rise, got {} after {}", t, last));
+        plan.times.push_back(t);
+      }
+      plan.rows = static_cast<double>(plan.times.size());
+      break;
+  }
+}
+
+}  // namespace
+
+integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters) {
+  std::vector<std::pair<std::string, double>> values;
+  for (const auto& [key, quantity] : description.parameters)
+    values.emplace_back(key, model::evaluate(quantity, parameters, key));
+  try {
+    return integrate::make_method(description.name, values);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(description.where, fault.message());
+  }
+}
+
+Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system) {
+  const auto index_of = [&](const std::string& name) {
+    const auto& known = system.coordinates();
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end())
+      throw InvalidInput(description.where,
+                         fmt::format("observe names \"{}\", which is no coordinate{}", name, suggestion(name, known)));
+    return static_cast<Index>(found - known.begin());
+  };
+  if (description.second.empty()) return {description.first, index_of(description.first), ground};
+  return {description.first + " - " + description.second, index_of(description.first), index_of(description.second)};
+}
+
+TransientPlan plan_transient(const std::string& name, const Location& where,
+                             const model::TransientDescription& description, const system::LocallyNonlinear& system,
+                             const numerics::Parameters& parameters) {
+  const std::string title = "analysis \"" + name + "\": ";
+  TransientPlan plan;
+  plan.method = method_of(description.method, parameters);
+  plan.duration = positive(description.duration, parameters, title + "duration", where);
+  plan.energy = description.energy;
+  const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
+  if (is_exact && description.step)
+    throw InvalidInput(place(description.step->where, where),
+                       title + "the method exact takes no step; remove the key, or choose another method");
+  if (!is_exact) {
+    if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
+    plan.step = positive(*description.step, parameters, title + "step", where);
+    if (plan.step > plan.duration)
+      throw InvalidInput(
+          place(description.step->where, where),
+          fmt::format("{}the step {} s is longer than the duration {} s", title, plan.step, plan.duration));
+    if (plan.duration / plan.step > 1e12)
+      throw InvalidInput(place(description.step->where, where),
+                         fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
+                                     plan.duration / plan.step, plan.step));
+    if (!description.allow_unstable) require_stable(plan, system, place(description.step->where, where));
+  }
+  plan_output(plan, description.output, parameters, where);
+  require_tables_to_reach(system, plan.duration, where);
+  if (description.observe) {
+    for (const auto& observation : *description.observe) plan.observed.push_back(observed_of(observation, system));
+  } else {
+    for (Index i = 0; i < system.size(); ++i)
+      plan.observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground});
+  }
+  return plan;
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <rubato/integrate/method.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A coordinate to record, or the difference of two.
+struct Observed {
+  std::string label;
+  Index first = 0;
+  Index second = ground;  ///< ground: `first` alone
+
+  double of(const Vector& x) const { return second == ground ? x[first] : x[first] - x[second]; }
+};
+
+/// A transient with all its values: what the description says, evaluated and found possible.
+struct TransientPlan {
+  integrate::Method method;
+  double step = 0.0;      ///< [s]; 0 for `exact`
+  double duration = 0.0;  ///< [s]
+  std::vector<Observed> observed;
+  model::OutputDescription::Kind output = model::OutputDescription::Kind::every_step;
+  long every = 1;
+  double interval = 0.0;      ///< [s]
+  std::vector<double> times;  ///< rising [s]
+  bool energy = true;
+  double rows = 0.0;  ///< expected number of rows
+};
+
+/// The method that a description names, with the values of its parameters. Throws InvalidInput at its place.
+integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters);
+
+/// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
+Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system);
+
+/// Evaluates a description and checks that it can run: values in their ranges, names known, tables that reach over the
+/// whole run, and a step below the stability limit of the model unless `allow_unstable`. Throws InvalidInput.
+TransientPlan plan_transient(const std::string& name, const Location& where,
+                             const model::TransientDescription& description, const system::LocallyNonlinear& system,
+                             const numerics::Parameters& parameters);
+
+}  // namespace rubato::analysis

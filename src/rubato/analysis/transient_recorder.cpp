@@ -1,0 +1,88 @@
+#include <rubato/analysis/transient_recorder.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace rubato::analysis {
+namespace {
+
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+Attributes attributes_of(const TransientPlan& plan, const system::LocallyNonlinear& system) {
+  Attributes attributes{{"type", "transient"}, {"method", plan.method.name}};
+  if (plan.step > 0.0) attributes.emplace_back("step", fmt::format("{} s", plan.step));
+  attributes.emplace_back("duration", fmt::format("{} s", plan.duration));
+  if (system.slider_count() > 0) {
+    std::vector<double> stiffness, limit;
+    for (const auto& slider : system.sliders()) {
+      stiffness.push_back(slider.stiffness);
+      limit.push_back(slider.limit);
+    }
+    attributes.emplace_back("slider_stiffness", fmt::format("{}", fmt::join(stiffness, ", ")));
+    attributes.emplace_back("slider_limit", fmt::format("{}", fmt::join(limit, ", ")));
+  }
+  return attributes;
+}
+
+results::Block scalar(const std::string& variable, const std::string& description) {
+  return {variable, "J", description, "", {}};
+}
+
+}  // namespace
+
+TransientRecorder::TransientRecorder(const std::string& name, const TransientPlan& plan,
+                                     const system::LocallyNonlinear& system, results::Sink& sink)
+    : system_(system), observed_(plan.observed), equilibrium_(system), acceleration_(system.size()) {
+  const results::Block time{"time", "s", "time", "", {}};
+  std::vector<std::string> labels, sliders;
+  for (const auto& observed : observed_) labels.push_back(observed.label);
+  for (const auto& slider : system.sliders()) sliders.push_back(slider.name);
+  results::TableLayout layout{name, "", "time", {time}, attributes_of(plan, system)};
+  if (!labels.empty()) {
+    layout.blocks.push_back({"position", "m", "displacement of each coordinate", "coordinate", labels});
+    layout.blocks.push_back({"velocity", "m/s", "velocity of each coordinate", "coordinate", labels});
+    layout.blocks.push_back({"acceleration", "m/s2", "acceleration of equilibrium", "coordinate", labels});
+  }
+  if (!sliders.empty()) {
+    layout.blocks.push_back({"force", "N", "slider force; -force acts on the first coordinate", "slider", sliders});
+    layout.blocks.push_back({"slip", "m", "slip, u - force/kT", "slider", sliders});
+  }
+  rows_ = sink.open(layout);
+  if (plan.energy)
+    energy_rows_ = sink.open({name,
+                              "energy",
+                              "time",
+                              {time, scalar("kinetic", "kinetic energy"), scalar("strain", "strain energy"),
+                               scalar("slider_stored", "elastic energy of the sliders"),
+                               scalar("damper_dissipated", "dissipated by the dampers since the start"),
+                               scalar("slider_dissipated", "dissipated by slip since the start"),
+                               scalar("load_work", "work of the loads since the start"),
+                               scalar("residue", "what the method itself made (+) or lost (-)")},
+                              {{"type", "energy"}}});
+}
+
+void TransientRecorder::record(const system::State& state, const Energy* energy) {
+  equilibrium_(state, acceleration_);
+  row_.clear();
+  row_.push_back(state.t);
+  for (const Vector* x : {&state.q, &state.v, static_cast<const Vector*>(&acceleration_)})
+    for (const Observed& observed : observed_) row_.push_back(observed.of(*x));
+  for (Index i = 0; i < system_.slider_count(); ++i) row_.push_back(state.slider_force[i]);
+  for (Index i = 0; i < system_.slider_count(); ++i)
+    row_.push_back(system_.relative_displacement(i, state.q) -
+                   state.slider_force[i] / system_.sliders()[static_cast<std::size_t>(i)].stiffness);
+  rows_->append(row_);
+  ++count_;
+  if (!energy_rows_ || !energy) return;
+  const double ledger[] = {state.t,
+                           energy->kinetic,
+                           energy->strain,
+                           energy->slider_stored,
+                           energy->damper_dissipated,
+                           energy->slider_dissipated,
+                           energy->load_work,
+                           energy->residue()};
+  energy_rows_->append(ledger);
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/analysis/energy_ledger.hpp>
+#include <rubato/analysis/run_context.hpp>
+#include <rubato/analysis/transient_plan.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// Turns states into rows: time, position, velocity and acceleration of what is observed, force and slip of every
+/// slider, and the energy ledger in a table of its own.
+class TransientRecorder {
+ public:
+  TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
+                    results::Sink& sink);
+
+  /// @param energy  null without a ledger
+  void record(const system::State& state, const Energy* energy);
+  bool keeps_energy() const { return energy_rows_ != nullptr; }
+  long rows() const { return count_; }
+
+ private:
+  const system::LocallyNonlinear& system_;
+  std::vector<Observed> observed_;
+  system::EquilibriumAcceleration equilibrium_;
+  Vector acceleration_;
+  std::vector<double> row_;
+  std::unique_ptr<results::RowWriter> rows_, energy_rows_;
+  long count_ = 0;
+};
+
+}  // namespace rubato::analysis

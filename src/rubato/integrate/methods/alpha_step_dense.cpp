@@ -1,0 +1,152 @@
+#include <rubato/integrate/contact_problem.hpp>
+#include <rubato/integrate/methods/alpha_step.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr int sliders_in_place = 2;  // so many are solved for without a vector of their own
+
+/// Everything that is linear is multiplied by S^-1 once per step size, so that a step is three small products.
+template <int N>
+class DenseAlphaStep final : public AlphaStep {
+  using Column = Eigen::Matrix<double, N, 1>;
+  using Square = Eigen::Matrix<double, N, N>;
+  using Wide = Eigen::Matrix<double, N, Eigen::Dynamic>;
+
+ public:
+  DenseAlphaStep(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
+      : p_(parameters), system_(system), n_(system.size()), m_(system.slider_count()) {
+    terms_ = static_cast<Index>(system.loads().terms().size());
+    for (const auto& slider : system.sliders()) {
+      first_.push_back(slider.first);
+      second_.push_back(slider.second);
+      stiffness_.push_back(slider.stiffness);
+    }
+    trial_.resize(m_);
+    a1_.resize(n_);
+    qs_.resize(n_);
+    vs_.resize(n_);
+    qc_.resize(n_);
+    vc_.resize(n_);
+  }
+
+  bool prepare(double h) override {
+    h_ = h;
+    const Matrix mass(system_.mass()), damping(system_.damping()), stiffness(system_.stiffness());
+    const double end = 1.0 - p_.alpha_f;
+    const Matrix effective = (1.0 - p_.alpha_m) * mass + end * (p_.gamma * h * damping + p_.beta * h * h * stiffness);
+    const Eigen::LLT<Matrix> factor(effective);
+    if (factor.info() != Eigen::Success) return false;
+    on_q_ = -factor.solve(stiffness);
+    on_v_ = -factor.solve(damping);
+    on_a_ = -p_.alpha_m * factor.solve(mass);
+    Matrix pattern = Matrix::Zero(n_, terms_), joins = Matrix::Zero(n_, m_);
+    for (Index i = 0; i < terms_; ++i) {
+      const auto& term = system_.loads().terms()[static_cast<std::size_t>(i)];
+      for (std::size_t k = 0; k < term.rows.size(); ++k) pattern(term.rows[k], i) += term.weights[k];
+    }
+    for (Index i = 0; i < m_; ++i) {
+      if (first_[static_cast<std::size_t>(i)] != ground) joins(first_[static_cast<std::size_t>(i)], i) += 1.0;
+      if (second_[static_cast<std::size_t>(i)] != ground) joins(second_[static_cast<std::size_t>(i)], i) -= 1.0;
+    }
+    on_load_ = factor.solve(pattern);
+    on_slider_ = factor.solve(joins);
+    contact_.reset(p_.beta * h * h * end * joins.transpose() * Matrix(on_slider_), system_.sliders());
+    return true;
+  }
+
+  StepReport solve(const system::State& from, const double* load, system::State& to) override {
+    const Eigen::Map<const Column> q0(from.q.data(), n_), v0(from.v.data(), n_),
+        a0(from.auxiliary_acceleration.data(), n_);
+    const double h = h_, end = 1.0 - p_.alpha_f;
+    qs_ = q0 + h * v0 + (h * h * (0.5 - p_.beta)) * a0;
+    vs_ = v0 + (h * (1.0 - p_.gamma)) * a0;
+    if (p_.alpha_f == 0.0) {
+      a1_.noalias() = on_q_ * qs_;
+      a1_.noalias() += on_v_ * vs_;
+    } else {
+      qc_ = end * qs_ + p_.alpha_f * q0;
+      vc_ = end * vs_ + p_.alpha_f * v0;
+      a1_.noalias() = on_q_ * qc_;
+      a1_.noalias() += on_v_ * vc_;
+    }
+    if (p_.alpha_m != 0.0) a1_.noalias() += on_a_ * a0;
+    for (Index i = 0; i < terms_; ++i) a1_ += load[i] * on_load_.col(i);
+    if (p_.alpha_f != 0.0)
+      for (Index i = 0; i < m_; ++i) a1_ -= (p_.alpha_f * from.slider_force[i]) * on_slider_.col(i);
+
+    const double bh2 = p_.beta * h * h;
+    if (m_ > 0) {
+      double in_place[sliders_in_place];
+      double* const trial = m_ <= sliders_in_place ? in_place : trial_.data();
+      for (Index i = 0; i < m_; ++i) {
+        const Index a = first_[static_cast<std::size_t>(i)], b = second_[static_cast<std::size_t>(i)];
+        double travel = 0.0;  // u_free - u0
+        if (a != ground) travel += qs_[a] - q0[a] + bh2 * a1_[a];
+        if (b != ground) travel -= qs_[b] - q0[b] + bh2 * a1_[b];
+        trial[i] = from.slider_force[i] + stiffness_[static_cast<std::size_t>(i)] * travel;
+      }
+      if (!contact_.solve(trial, from.slider_force.data(), to.slider_force.data())) {
+        if (!std::isfinite(a1_.sum())) return {StepOutcome::not_finite, worst()};
+        return {StepOutcome::not_converged, contact_.worst()};
+      }
+      for (Index i = 0; i < m_; ++i) a1_ -= (end * to.slider_force[i]) * on_slider_.col(i);
+    }
+    Eigen::Map<Column>(to.auxiliary_acceleration.data(), n_) = a1_;
+    Eigen::Map<Column>(to.q.data(), n_) = qs_ + bh2 * a1_;
+    Eigen::Map<Column>(to.v.data(), n_) = vs_ + (h * p_.gamma) * a1_;
+    if (!std::isfinite(a1_.sum())) return {StepOutcome::not_finite, worst()};
+    return {};
+  }
+
+ private:
+  Index worst() const {
+    for (Index i = 0; i < n_; ++i)
+      if (!std::isfinite(a1_[i])) return i;
+    return -1;
+  }
+
+  GeneralizedAlpha p_;
+  const system::LocallyNonlinear& system_;
+  Index n_, m_, terms_ = 0;
+  double h_ = 0.0;
+  std::vector<Index> first_, second_;
+  std::vector<double> stiffness_;
+  Square on_q_, on_v_, on_a_;  // S^-1 times -K, -C, -alpha_m M
+  Wide on_load_, on_slider_;   // S^-1 times the patterns of the loads, and B
+  Column a1_, qs_, vs_, qc_, vc_;
+  ContactProblem contact_;
+  Vector trial_;
+};
+
+}  // namespace
+
+std::unique_ptr<AlphaStep> make_dense_alpha_step(const GeneralizedAlpha& parameters,
+                                                 const system::LocallyNonlinear& system) {
+  switch (system.size()) {
+    case 1:
+      return std::make_unique<DenseAlphaStep<1>>(parameters, system);
+    case 2:
+      return std::make_unique<DenseAlphaStep<2>>(parameters, system);
+    case 3:
+      return std::make_unique<DenseAlphaStep<3>>(parameters, system);
+    case 4:
+      return std::make_unique<DenseAlphaStep<4>>(parameters, system);
+    case 5:
+      return std::make_unique<DenseAlphaStep<5>>(parameters, system);
+    case 6:
+      return std::make_unique<DenseAlphaStep<6>>(parameters, system);
+    case 7:
+      return std::make_unique<DenseAlphaStep<7>>(parameters, system);
+    case 8:
+      return std::make_unique<DenseAlphaStep<8>>(parameters, system);
+    default:
+      return std::make_unique<DenseAlphaStep<Eigen::Dynamic>>(parameters, system);
+  }
+}
+
+}  // namespace rubato::integrate

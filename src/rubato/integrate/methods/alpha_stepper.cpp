@@ -1,0 +1,131 @@
+#include <rubato/integrate/load_values.hpp>
+#include <rubato/integrate/methods/alpha_step.hpp>
+#include <rubato/integrate/methods/steppers.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+/// Keeps the matrices of a step while the step stays the same.
+class PreparedStep {
+ public:
+  PreparedStep(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
+      : step_(make_alpha_step(parameters, system)) {}
+
+  bool prepare(double h) {
+    if (h == h_) return true;
+    h_ = std::nan("");
+    ++factorisations_;
+    if (!step_->prepare(h)) return false;
+    h_ = h;
+    return true;
+  }
+  AlphaStep* operator->() { return step_.get(); }
+  int factorisations() const { return factorisations_; }
+
+ private:
+  std::unique_ptr<AlphaStep> step_;
+  double h_ = std::nan("");
+  int factorisations_ = 0;
+};
+
+class AlphaStepper final : public Stepper {
+ public:
+  AlphaStepper(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
+      : p_(parameters), system_(system), step_(parameters, system), loads_(system.loads()), load_(loads_.count()) {}
+
+  // A stands at t + d h with d = alpha_m - alpha_f: its distance from the acceleration at t is proportional to h.
+  void step_changes(system::State& state, double ratio) override {
+    if (p_.alpha_m == 0.0 && p_.alpha_f == 0.0) return;
+    Vector acceleration(system_.size());
+    system::EquilibriumAcceleration equilibrium(system_);
+    equilibrium(state, acceleration);
+    state.auxiliary_acceleration = acceleration + ratio * (state.auxiliary_acceleration - acceleration);
+  }
+
+  StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    if (!step_.prepare(h)) return {StepOutcome::singular, -1};
+    if (p_.alpha_f == 0.0) {
+      loads_.evaluate_end(t1);
+      for (std::size_t i = 0; i < load_.size(); ++i) load_[i] = loads_.end(i);
+    } else {
+      loads_.evaluate(from.t, t1);
+      for (std::size_t i = 0; i < load_.size(); ++i)
+        load_[i] = (1.0 - p_.alpha_f) * loads_.end(i) + p_.alpha_f * loads_.start(i);
+    }
+    to.t = t1;
+    StepReport report = step_->solve(from, load_.data(), to);
+    if (report.outcome != StepOutcome::accepted && loads_.fault() >= 0) report.worst = loads_.fault();
+    return report;
+  }
+
+  int factorisations() const override { return step_.factorisations(); }
+
+ private:
+  GeneralizedAlpha p_;
+  const system::LocallyNonlinear& system_;
+  PreparedStep step_;
+  LoadValues loads_;
+  std::vector<double> load_;
+};
+
+/// Linear acceleration to t + theta h under the load continued linearly, then back to t + h on the same line. The
+/// return map of the sliders runs to t + theta h with the trial motion and to t + h with the accepted one.
+class WilsonStepper final : public Stepper {
+ public:
+  WilsonStepper(const WilsonTheta& method, const system::LocallyNonlinear& system)
+      : theta_(method.theta),
+        system_(system),
+        step_(GeneralizedAlpha{0.0, 0.0, 1.0 / 6.0, 0.5}, system),
+        loads_(system.loads()),
+        load_(loads_.count()),
+        beyond_(system.start()) {}
+
+  StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    if (!step_.prepare(theta_ * h)) return {StepOutcome::singular, -1};
+    loads_.evaluate(from.t, t1);
+    for (std::size_t i = 0; i < load_.size(); ++i)
+      load_[i] = loads_.start(i) + theta_ * (loads_.end(i) - loads_.start(i));
+    StepReport report = step_->solve(from, load_.data(), beyond_);
+    if (report.outcome != StepOutcome::accepted) {
+      if (loads_.fault() >= 0) report.worst = loads_.fault();
+      return report;
+    }
+    const Vector& a0 = from.auxiliary_acceleration;
+    to.t = t1;
+    to.auxiliary_acceleration = a0 + (beyond_.auxiliary_acceleration - a0) / theta_;
+    to.v = from.v + (0.5 * h) * (a0 + to.auxiliary_acceleration);
+    to.q = from.q + h * from.v + (h * h / 6.0) * (2.0 * a0 + to.auxiliary_acceleration);
+    for (Index i = 0; i < system_.slider_count(); ++i) {
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      const double travel = system_.relative_displacement(i, to.q) - system_.relative_displacement(i, from.q);
+      to.slider_force[i] = std::clamp(from.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
+    }
+    return report;
+  }
+
+  int factorisations() const override { return step_.factorisations(); }
+
+ private:
+  double theta_;
+  const system::LocallyNonlinear& system_;
+  PreparedStep step_;
+  LoadValues loads_;
+  std::vector<double> load_;
+  system::State beyond_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_alpha_stepper(const GeneralizedAlpha& parameters,
+                                            const system::LocallyNonlinear& system) {
+  return std::make_unique<AlphaStepper>(parameters, system);
+}
+
+std::unique_ptr<Stepper> make_wilson_stepper(const WilsonTheta& method, const system::LocallyNonlinear& system) {
+  return std::make_unique<WilsonStepper>(method, system);
+}
+
+}  // namespace rubato::integrate

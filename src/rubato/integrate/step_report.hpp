@@ -1,0 +1,21 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+
+namespace rubato::integrate {
+
+/// What became of one attempted step. A failure is an outcome, not an exception: the driver decides what to do about
+/// it.
+enum class StepOutcome {
+  accepted,       ///< the state is the solution at t + h
+  not_converged,  ///< the contact problem of the sliders found no consistent set of sticking ones
+  not_finite,     ///< a NaN or an infinity appeared
+  singular,       ///< the effective matrix of this step cannot be factorised
+};
+
+struct StepReport {
+  StepOutcome outcome = StepOutcome::accepted;
+  Index worst = -1;  ///< the equation (not_finite, singular) or the slider (not_converged) at fault; -1: unknown
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,51 @@
+#include <rubato/core/error.hpp>
+#include <rubato/io/output_folder.hpp>
+#include <rubato/io/provenance.hpp>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+
+namespace rubato::io {
+
+std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+std::string write_failure(const std::filesystem::path& file, int error_number) {
+  std::error_code fault;
+  const auto space = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", fault);
+  if (error_number == ENOSPC || (!fault && space.available < (1u << 16)))
+    return fmt::format("{}: the disk is full; free some space or write elsewhere (-o DIR)", file.string());
+  const std::string reason = error_number != 0 ? std::strerror(error_number) : "the write failed";
+  return fmt::format("{}: {}; write elsewhere (-o DIR)", file.string(), reason);
+}
+
+void prepare_output_folder(const std::filesystem::path& folder, double expected_bytes) {
+  namespace fs = std::filesystem;
+  std::error_code fault;
+  if (fs::exists(folder, fault) && !fs::is_directory(folder, fault))
+    throw OutputError(fmt::format("{}: exists and is no folder; choose another (-o DIR)", folder.string()));
+  fs::create_directories(folder, fault);
+  if (fault)
+    throw OutputError(
+        fmt::format("{}: the folder cannot be made: {}; choose another (-o DIR)", folder.string(), fault.message()));
+  const fs::path probe = folder / ".rubato-probe";
+  {
+    errno = 0;
+    std::ofstream stream(probe);
+    stream << "probe" << std::flush;
+    if (!stream) throw OutputError(write_failure(probe, errno));
+  }
+  fs::remove(probe, fault);
+  const auto space = fs::space(folder, fault);
+  if (!fault && expected_bytes > static_cast<double>(space.available))
+    throw OutputError(
+        fmt::format("{}: the results will take about {:.3g} GB and {:.3g} GB are free; write fewer rows "
+                    "(output = {{ interval = ... }}, observe = [...]) or elsewhere (-o DIR)",
+                    folder.string(), expected_bytes / 1e9, static_cast<double>(space.available) / 1e9));
+}
+
+}  // namespace rubato::io

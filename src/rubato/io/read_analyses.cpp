@@ -1,0 +1,144 @@
+#include <rubato/io/read_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rubato::io {
+namespace {
+
+using namespace model;
+
+MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key) {
+  MethodDescription method;
+  method.where = reader.location(node);
+  if (const auto* name = node.as_string()) {
+    method.name = name->get();
+    return method;
+  }
+  const auto* table = node.as_table();
+  if (!table) reader.refuse_type(node, key, "a method's name, or a table such as { name = \"hht\", alpha = -0.05 }");
+  TomlReader inner(*table, reader.what() + ": " + key, reader.file());
+  method.name = inner.text("name");
+  for (const auto& [parameter, value] : *table) {
+    const std::string word(parameter.str());
+    if (word != "name") method.parameters.emplace_back(word, inner.quantity(word));
+  }
+  return method;
+}
+
+ObservationDescription to_observation(const std::string& text, const Location& where) {
+  const std::size_t minus = text.find(" - ");
+  if (minus == std::string::npos) return {text, "", where};
+  return {text.substr(0, minus), text.substr(minus + 3), where};
+}
+
+std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& reader) {
+  std::vector<Location> places;
+  const auto texts = reader.optional_texts("observe", &places);
+  if (!texts) return std::nullopt;
+  std::vector<ObservationDescription> observations;
+  for (std::size_t i = 0; i < texts->size(); ++i) observations.push_back(to_observation((*texts)[i], places[i]));
+  return observations;
+}
+
+OutputDescription read_output(TomlReader& reader) {
+  OutputDescription output;
+  auto table = reader.optional_table("output", reader.what() + ": output");
+  if (!table) return output;
+  output.where = table->where();
+  const auto every = table->optional_integer("every");
+  const auto interval = table->optional_quantity("interval");
+  const auto times = table->optional_quantities("times");
+  table->finish();
+  if (every.has_value() + interval.has_value() + times.has_value() != 1)
+    throw InvalidInput(table->where(),
+                       fmt::format("{}: output needs exactly one of \"every\" (steps), \"interval\" [s] "
+                                   "and \"times\" [s]",
+                                   reader.what()));
+  if (every) {
+    output.kind = OutputDescription::Kind::every;
+    if (*every < 1 || *every > 2'000'000'000)
+      throw InvalidInput(table->where("every"), fmt::format("every must be at least 1, got {}", *every));
+    output.every = static_cast<int>(*every);
+  } else if (interval) {
+    output.kind = OutputDescription::Kind::interval;
+    output.interval = *interval;
+  } else {
+    output.kind = OutputDescription::Kind::times;
+    output.times = *times;
+  }
+  return output;
+}
+
+TransientDescription read_transient(TomlReader& reader) {
+  TransientDescription transient;
+  if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
+  if (const toml::node* step = reader.node("step")) {
+    if (step->is_table())
+      throw InvalidInput(reader.location(*step),
+                         reader.what() + ": automatic steps are not in this version; give the step as a number [s]");
+    transient.step = reader.quantity("step");
+  }
+  transient.duration = reader.quantity("duration");
+  transient.output = read_output(reader);
+  transient.observe = read_observe(reader);
+  transient.energy = reader.optional_bool("energy").value_or(true);
+  transient.allow_unstable = reader.optional_bool("allow_unstable").value_or(false);
+  return transient;
+}
+
+MethodStudyDescription read_method_study(TomlReader& reader) {
+  MethodStudyDescription study;
+  if (const toml::node* methods = reader.node("methods")) {
+    const auto* list = methods->as_array();
+    if (!list || list->empty()) reader.refuse_type(*methods, "methods", "a list of methods");
+    for (const toml::node& entry : *list) study.methods.push_back(to_method(reader, entry, "methods"));
+  }
+  study.step = reader.quantity("step");
+  study.duration = reader.quantity("duration");
+  study.ladder = reader.optional_quantities("ladder").value_or(std::vector<Quantity>{});
+  if (const auto observe = reader.optional_text("observe"))
+    study.observe = to_observation(*observe, reader.where("observe"));
+  study.as_printed = reader.optional_bool("as_printed").value_or(false);
+  return study;
+}
+
+}  // namespace
+
+std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
+  const std::vector<std::string> known{"transient", "method_study"};
+  const std::vector<std::string> planned{"frequency_response", "damper_curve", "modes", "static"};
+  std::vector<AnalysisDescription> analyses;
+  for (TomlReader& reader : root.tables("analysis")) {
+    AnalysisDescription analysis;
+    analysis.where = reader.where();
+    analysis.name = reader.text("name");
+    reader.rename(fmt::format("analysis \"{}\"", analysis.name));
+    if (analysis.name.empty() || analysis.name.find_first_of("/\\.\0") != std::string::npos ||
+        analysis.name == "results")
+      throw InvalidInput(reader.where("name"), fmt::format("the analysis name \"{}\" becomes a file name: it cannot be "
+                                                           "empty or \"results\", or hold a slash or a dot",
+                                                           analysis.name));
+    for (const auto& other : analyses)
+      if (other.name == analysis.name)
+        throw InvalidInput(reader.where("name"), fmt::format("two analyses are called \"{}\"; the first is on line {}",
+                                                             analysis.name, other.where.line));
+    const std::string type = reader.text("type");
+    if (std::find(planned.begin(), planned.end(), type) != planned.end())
+      throw InvalidInput(reader.where("type"),
+                         fmt::format("analysis \"{}\": the type \"{}\" is not in this version (known: "
+                                     "transient, method_study)",
+                                     analysis.name, type));
+    (void)reader.optional_word("type", known);
+    if (type == "transient")
+      analysis.task = read_transient(reader);
+    else
+      analysis.task = read_method_study(reader);
+    reader.finish();
+    analyses.push_back(std::move(analysis));
+  }
+  return analyses;
+}
+
+}  // namespace rubato::io

@@ -1,0 +1,176 @@
+#include <rubato/io/read_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace rubato::io {
+namespace {
+
+using namespace model;
+
+TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& folder) {
+  const bool has_amplitude = reader.has("amplitude"), has_expression = reader.has("expression"),
+             has_table = reader.has("table");
+  if (has_amplitude + has_expression + has_table != 1)
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} needs exactly one of \"amplitude\" (harmonic), \"expression\" (of "
+                                   "t) and \"table\" (a CSV file), got {}",
+                                   reader.what(), has_amplitude + has_expression + has_table));
+  if (has_expression) {
+    TimeFormulaDescription formula{reader.quantity("expression")};
+    if (formula.formula.expression.empty()) formula.formula.expression = fmt::format("{}", formula.formula.value);
+    return formula;
+  }
+  if (has_table) {
+    TableDescription table = read_table(reader.text("table"), folder, reader.where("table"));
+    const auto beyond = reader.optional_word("beyond", {"error", "zero", "hold"});
+    if (beyond == "zero") table.beyond = TableDescription::Beyond::zero;
+    if (beyond == "hold") table.beyond = TableDescription::Beyond::hold;
+    return table;
+  }
+  HarmonicDescription harmonic;
+  harmonic.amplitude = reader.quantity("amplitude");
+  harmonic.phase = reader.optional_quantity("phase").value_or(Quantity(0.0));
+  const auto angular = reader.optional_quantity("angular_frequency");
+  const auto hertz = reader.optional_quantity("frequency");
+  if (angular && hertz)
+    throw InvalidInput(hertz->where,
+                       reader.what() + " has both \"angular_frequency\" [rad/s] and \"frequency\" [Hz]; keep one");
+  if (!angular && !hertz)
+    throw InvalidInput(reader.where(), reader.what() + " lacks \"angular_frequency\" [rad/s] or \"frequency\" [Hz]");
+  harmonic.angular_frequency = angular ? *angular : *hertz;
+  harmonic.frequency_in_hertz = hertz.has_value();
+  return harmonic;
+}
+
+template <class Element>
+Element read_joining(TomlReader& reader) {
+  Element element;
+  element.where = reader.where();
+  std::array<Location, 2> places;
+  element.between = reader.between("between", places);
+  element.between_where = places;
+  return element;
+}
+
+DampingDescription read_damping(TomlReader& root) {
+  auto reader = root.optional_table("damping", "[damping]");
+  if (!reader) return {};
+  const bool modal = reader->has("modal_ratio"), rayleigh = reader->has("rayleigh");
+  if (modal == rayleigh)
+    throw InvalidInput(reader->where(), modal ? "[damping] has both \"modal_ratio\" and \"rayleigh\"; keep one"
+                                              : "[damping] needs \"modal_ratio\" or \"rayleigh\"; a dashpot is a "
+                                                "[[damper]]");
+  DampingDescription damping;
+  if (modal) {
+    ModalDamping description;
+    description.where = reader->where("modal_ratio");
+    if (reader->node("modal_ratio")->is_array())
+      description.ratios = *reader->optional_quantities("modal_ratio");
+    else
+      description.ratios = {reader->quantity("modal_ratio")};
+    description.modes = reader->optional_quantity("modes");
+    damping = description;
+  } else {
+    auto coefficients = reader->optional_table("rayleigh", "rayleigh");
+    RayleighDamping description;
+    description.where = coefficients->where();
+    description.mass = coefficients->optional_quantity("mass").value_or(Quantity(0.0));
+    description.stiffness = coefficients->optional_quantity("stiffness").value_or(Quantity(0.0));
+    coefficients->finish();
+    damping = description;
+  }
+  reader->finish();
+  return damping;
+}
+
+std::optional<MatricesDescription> read_matrices(TomlReader& root, const std::filesystem::path& folder) {
+  auto reader = root.optional_table("matrices", "[matrices]");
+  if (!reader) return std::nullopt;
+  const auto matrix = [&](const std::string& key) {
+    const std::string file = reader->text(key);
+    return read_matrix_market(file, folder, reader->where(key));
+  };
+  MatricesDescription matrices;
+  matrices.where = reader->where();
+  matrices.mass = matrix("mass");
+  if (reader->has("damping")) matrices.damping = matrix("damping");
+  matrices.stiffness = matrix("stiffness");
+  matrices.names = reader->optional_texts("names").value_or(std::vector<std::string>{});
+  matrices.position = reader->optional_quantities_by_name("position").value_or(decltype(matrices.position){});
+  matrices.velocity = reader->optional_quantities_by_name("velocity").value_or(decltype(matrices.velocity){});
+  reader->finish();
+  return matrices;
+}
+
+std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const std::filesystem::path& folder) {
+  auto reader = root.optional_table("base_motion", "[base_motion]");
+  if (!reader) return std::nullopt;
+  BaseMotionDescription motion;
+  motion.where = reader->where();
+  motion.law = read_law(*reader, folder);
+  const auto of = reader->optional_word("of", {"acceleration", "velocity", "displacement"});
+  if (of == "velocity") motion.of = BaseMotionDescription::Of::velocity;
+  if (of == "displacement") motion.of = BaseMotionDescription::Of::displacement;
+  if (motion.of != BaseMotionDescription::Of::acceleration && !std::holds_alternative<HarmonicDescription>(motion.law))
+    throw InvalidInput(reader->where("of"), fmt::format("[base_motion]: of = \"{}\" is for harmonic motion, whose "
+                                                        "acceleration is known; give the acceleration",
+                                                        *of));
+  motion.direction = reader->optional_quantities_by_name("direction").value_or(decltype(motion.direction){});
+  reader->finish();
+  return motion;
+}
+
+}  // namespace
+
+ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder) {
+  ModelDescription model;
+  model.where = root.where();
+  for (TomlReader& reader : root.tables("coordinate")) {
+    CoordinateDescription coordinate;
+    coordinate.where = reader.where();
+    coordinate.name = reader.text("name");
+    reader.rename(fmt::format("coordinate \"{}\"", coordinate.name));
+    coordinate.mass = reader.quantity("mass");
+    coordinate.position = reader.optional_quantity("position").value_or(Quantity(0.0));
+    coordinate.velocity = reader.optional_quantity("velocity").value_or(Quantity(0.0));
+    reader.finish();
+    model.coordinates.push_back(std::move(coordinate));
+  }
+  model.matrices = read_matrices(root, folder);
+  for (TomlReader& reader : root.tables("spring")) {
+    model.springs.push_back(read_joining<SpringDescription>(reader));
+    model.springs.back().stiffness = reader.quantity("stiffness");
+    reader.finish();
+  }
+  for (TomlReader& reader : root.tables("damper")) {
+    model.dampers.push_back(read_joining<DamperDescription>(reader));
+    model.dampers.back().damping = reader.quantity("damping");
+    reader.finish();
+  }
+  model.damping = read_damping(root);
+  for (TomlReader& reader : root.tables("slider")) {
+    const std::string name = reader.optional_text("name").value_or(fmt::format("slider{}", model.sliders.size() + 1));
+    reader.rename(fmt::format("slider \"{}\"", name));
+    model.sliders.push_back(read_joining<SliderDescription>(reader));
+    SliderDescription& slider = model.sliders.back();
+    slider.name = name;
+    slider.stiffness = reader.quantity("stiffness");
+    slider.friction_coefficient = reader.quantity("friction_coefficient");
+    slider.normal_load = reader.quantity("normal_load");
+    reader.finish();
+  }
+  for (TomlReader& reader : root.tables("force")) {
+    ForceDescription force;
+    force.on = reader.name("on", &force.where);
+    reader.rename(fmt::format("the force on \"{}\"", force.on));
+    force.law = read_law(reader, folder);
+    reader.finish();
+    model.forces.push_back(std::move(force));
+  }
+  model.base_motion = read_base_motion(root, folder);
+  return model;
+}
+
+}  // namespace rubato::io

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <rubato/io/toml_reader.hpp>
+
+#include <filesystem>
+
+// The parts of a study file, each in a file of its own. Private to io.
+namespace rubato::io {
+
+/// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
+model::ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder);
+
+/// [[analysis]]
+std::vector<model::AnalysisDescription> read_analyses(TomlReader& root);
+
+/// A CSV file of two columns, time and value; a first line that is no number is a header; `#` begins a comment.
+model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where);
+
+/// A Matrix Market file: coordinate or array format, real or integer, general or symmetric; symmetric in value.
+model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,
+                                            const Location& where);
+
+/// The text of a file. Throws InvalidInput at `where` if it cannot be read or is larger than `limit` [bytes].
+std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
+                      std::uintmax_t limit, const std::string& what);
+
+}  // namespace rubato::io

@@ -1,0 +1,75 @@
+#include <rubato/io/read_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace rubato::io {
+namespace {
+
+constexpr std::uintmax_t largest_table = 512u << 20;
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+bool to_number(std::string_view text, double& value) {
+  text = trimmed(text);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return fault == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder,
+                                   const Location& where) {
+  const std::string text = read_text(folder / file, file, where, largest_table, "the table");
+  model::TableDescription table;
+  table.file = file;
+  table.where = where;
+  int line_number = 0;
+  bool header_allowed = true;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
+    begin = end + 1;
+    ++line_number;
+    const Location here{file, line_number, 0};
+    if (line.empty() || line.front() == '#') continue;
+    const auto separator = line.find_first_of(",;\t");
+    double time = 0.0, value = 0.0;
+    const bool is_pair = separator != std::string_view::npos && to_number(line.substr(0, separator), time) &&
+                         to_number(line.substr(separator + 1), value);
+    if (!is_pair && header_allowed) {
+      double number;
+      if (separator == std::string_view::npos || !to_number(line.substr(0, separator), number)) {
+        header_allowed = false;
+        continue;
+      }
+    }
+    header_allowed = false;
+    if (!is_pair)
+      throw InvalidInput(here, fmt::format("a row must be two numbers, time and value, with a comma between them; got "
+                                           "\"{}\"",
+                                           line.substr(0, 60)));
+    if (!std::isfinite(time) || !std::isfinite(value))
+      throw InvalidInput(here, fmt::format("a number is not finite: \"{}\"", line.substr(0, 60)));
+    if (!table.times.empty() && time < table.times.back())
+      throw InvalidInput(here, fmt::format("times must not fall: {} after {}", time, table.times.back()));
+    if (table.times.size() > 1 && time == table.times.back() && time == table.times[table.times.size() - 2])
+      throw InvalidInput(here, fmt::format("more than two rows at the time {}; two are a jump", time));
+    table.times.push_back(time);
+    table.values.push_back(value);
+  }
+  if (table.times.size() < 2)
+    throw InvalidInput({file, 0, 0},
+                       fmt::format("the table has {} row(s) of numbers; it needs two or more", table.times.size()));
+  return table;
+}
+
+}  // namespace rubato::io

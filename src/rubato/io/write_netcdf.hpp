@@ -1,0 +1,33 @@
+#pragma once
+
+#include <rubato/io/provenance.hpp>
+#include <rubato/results/sink.hpp>
+
+#include <filesystem>
+#include <memory>
+
+namespace rubato::io {
+
+/// One netCDF-4 file: a group an analysis, a subgroup a named table. Rows are along an unlimited dimension with its
+/// coordinate variable; the names along `coordinate` and `slider` are string variables of the same name, so that xarray
+/// labels them. Words are numbers with flag_values and flag_meanings (blanks in a word become underscores).
+///
+/// Rows are buffered to about a megabyte and reach the disk at least once a second, so that memory does not grow and
+/// what was computed stays readable after an interrupt. Throws OutputError.
+class NetcdfSink final : public results::Sink {
+ public:
+  NetcdfSink(const std::filesystem::path& path, const Provenance& provenance);
+  ~NetcdfSink() override;
+  std::unique_ptr<results::RowWriter> open(const results::TableLayout& layout) override;
+  void conclude(const std::string& analysis, const std::string& status, const std::string& message,
+                const std::vector<std::pair<std::string, std::string>>& attributes) override;
+  /// Closes the file; throws OutputError where what is buffered cannot be written.
+  void close();
+
+  class File;
+
+ private:
+  std::shared_ptr<File> file_;
+};
+
+}  // namespace rubato::io

@@ -1,0 +1,273 @@
+#include <rubato/model/model.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+
+namespace rubato::model {
+namespace {
+
+using numerics::Parameters;
+
+/// Looks names up and evaluates numbers, with messages that name the part.
+class Builder {
+ public:
+  Builder(const ModelDescription& description, const Parameters& parameters)
+      : description_(description), parameters_(parameters) {}
+
+  Model build() {
+    if (description_.matrices)
+      take_matrices(*description_.matrices);
+    else
+      take_coordinates();
+    take_springs();
+    take_damping();
+    take_sliders();
+    for (const ForceDescription& force : description_.forces)
+      model_.forces.push_back(
+          {find(force.on, force.where, "a force is on"), law(force.law, fmt::format("the force on \"{}\"", force.on))});
+    if (description_.base_motion) take_base_motion(*description_.base_motion);
+    return std::move(model_);
+  }
+
+ private:
+  double number(const Quantity& quantity, const std::string& what) const {
+    return evaluate(quantity, parameters_, what);
+  }
+
+  double at_least_zero(const Quantity& quantity, const std::string& what, const std::string& remedy = "") const {
+    const double value = number(quantity, what);
+    if (!(value >= 0.0))
+      throw InvalidInput(quantity.where, fmt::format("{} must not be negative, got {}{}", what, value, remedy));
+    return value;
+  }
+
+  void add_coordinate(const std::string& name, const Location& where) {
+    if (name.empty() || name == "ground")
+      throw InvalidInput(where, name.empty() ? "a coordinate needs a name"
+                                             : "the name \"ground\" is taken: it stands for what does not move");
+    if (!places_.emplace(name, static_cast<Index>(model_.coordinates.size())).second)
+      throw InvalidInput(where, fmt::format("two coordinates are called \"{}\"", name));
+    model_.coordinates.push_back(name);
+  }
+
+  void take_coordinates() {
+    const auto n = static_cast<Index>(description_.coordinates.size());
+    if (n == 0)
+      throw InvalidInput(description_.where, "the study has no [[coordinate]] and no [matrices]; it needs one of them");
+    model_.mass.resize(n);
+    model_.position.resize(n);
+    model_.velocity.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      const CoordinateDescription& c = description_.coordinates[static_cast<std::size_t>(i)];
+      add_coordinate(c.name, c.where);
+      const std::string what = fmt::format("coordinate \"{}\": ", c.name);
+      const double mass = number(c.mass, what + "mass");
+      if (!(mass > 0.0))
+        throw InvalidInput(c.mass.where,
+                           mass == 0.0
+                               ? fmt::format("{}mass is 0, which makes the mass matrix singular; give it a mass, "
+                                             "or remove the coordinate and join its springs in series",
+                                             what)
+                               : fmt::format("{}mass must be positive, got {}", what, mass));
+      model_.mass[i] = mass;
+      model_.position[i] = number(c.position, what + "position");
+      model_.velocity[i] = number(c.velocity, what + "velocity");
+    }
+  }
+
+  SparseMatrix to_sparse(const MatrixDescription& matrix, int size) const {
+    if (matrix.size != size)
+      throw InvalidInput(matrix.where, fmt::format("the matrix \"{}\" is {} x {}, but the mass matrix is {} x {}",
+                                                   matrix.file, matrix.size, matrix.size, size, size));
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(matrix.entries.size());
+    for (const auto& entry : matrix.entries) entries.emplace_back(entry.row, entry.column, entry.value);
+    SparseMatrix sparse(size, size);
+    sparse.setFromTriplets(entries.begin(), entries.end());
+    return SparseMatrix(0.5 * (sparse + SparseMatrix(sparse.transpose())));
+  }
+
+  void take_matrices(const MatricesDescription& matrices) {
+    const auto refuse = [&](const Location& where, const std::string& key) {
+      throw InvalidInput(where,
+                         fmt::format("[[{}]] does not go with [matrices], which hold the whole structure; add it to "
+                                     "the matrices",
+                                     key));
+    };
+    if (!description_.coordinates.empty()) refuse(description_.coordinates.front().where, "coordinate");
+    if (!description_.springs.empty()) refuse(description_.springs.front().where, "spring");
+    if (!description_.dampers.empty()) refuse(description_.dampers.front().where, "damper");
+    const int size = matrices.mass.size;
+    if (!matrices.names.empty() && static_cast<int>(matrices.names.size()) != size)
+      throw InvalidInput(matrices.where,
+                         fmt::format("[matrices]: {} names for {} coordinates", matrices.names.size(), size));
+    for (int i = 0; i < size; ++i)
+      add_coordinate(matrices.names.empty() ? std::to_string(i + 1) : matrices.names[static_cast<std::size_t>(i)],
+                     matrices.where);
+    if (!matrices.names.empty())
+      for (int i = 0; i < size; ++i) places_.emplace(std::to_string(i + 1), i);  // numbers serve beside names
+    FullMatrices full;
+    full.mass = to_sparse(matrices.mass, size);
+    full.stiffness = to_sparse(matrices.stiffness, size);
+    full.damping = matrices.damping ? to_sparse(*matrices.damping, size) : SparseMatrix(size, size);
+    model_.matrices = std::move(full);
+    model_.position = Vector::Zero(size);
+    model_.velocity = Vector::Zero(size);
+    for (const auto& [name, value] : matrices.position)
+      model_.position[find(name, value.where, "position names")] = number(value, "position of \"" + name + "\"");
+    for (const auto& [name, value] : matrices.velocity)
+      model_.velocity[find(name, value.where, "velocity names")] = number(value, "velocity of \"" + name + "\"");
+  }
+
+  /// @param role  "slider \"contact1\" joins"
+  Index find(const std::string& name, const Location& where, const std::string& role) const {
+    const auto found = places_.find(name);
+    if (found != places_.end()) return found->second;
+    throw InvalidInput(
+        where, fmt::format("{} \"{}\", which is no coordinate{}", role, name, suggestion(name, model_.coordinates)));
+  }
+
+  void join(const Between& names, const std::array<Location, 2>& where, const std::string& part, Index& first,
+            Index& second) const {
+    const auto end = [&](std::size_t i) {
+      return names[i] == "ground" ? ground : find(names[i], where[i], part + " joins");
+    };
+    first = end(0);
+    second = end(1);
+    if (first == second) throw InvalidInput(where[1], fmt::format("{} joins \"{}\" with itself", part, names[1]));
+  }
+
+  void take_springs() {
+    for (const SpringDescription& spring : description_.springs) {
+      const std::string part =
+          fmt::format("the spring between \"{}\" and \"{}\"", spring.between[0], spring.between[1]);
+      LinearElement element;
+      join(spring.between, spring.between_where, part, element.first, element.second);
+      element.coefficient = at_least_zero(spring.stiffness, part + ": stiffness");
+      model_.springs.push_back(element);
+    }
+    for (const DamperDescription& damper : description_.dampers) {
+      const std::string part =
+          fmt::format("the damper between \"{}\" and \"{}\"", damper.between[0], damper.between[1]);
+      LinearElement element;
+      join(damper.between, damper.between_where, part, element.first, element.second);
+      element.coefficient = at_least_zero(damper.damping, part + ": damping");
+      model_.dashpots.push_back(element);
+    }
+  }
+
+  void take_damping() {
+    if (const auto* modal = std::get_if<ModalDamping>(&description_.damping)) {
+      if (description_.matrices && description_.matrices->damping)
+        throw InvalidInput(modal->where,
+                           "modal_ratio and the damping matrix of [matrices] would count damping twice; keep one");
+      ModalDampingRatios ratios;
+      const auto n = model_.size();
+      for (const Quantity& ratio : modal->ratios) ratios.ratios.push_back(at_least_zero(ratio, "modal_ratio"));
+      if (modal->modes) {
+        const double modes = number(*modal->modes, "modes");
+        if (!(modes >= 1.0 && modes <= static_cast<double>(n)) || modes != std::floor(modes))
+          throw InvalidInput(modal->modes->where,
+                             fmt::format("modes must be a whole number from 1 to {}, got {}", n, modes));
+        ratios.modes = static_cast<Index>(modes);
+      }
+      const Index damped = ratios.modes < 0 ? n : ratios.modes;
+      const auto given = static_cast<Index>(ratios.ratios.size());
+      if (given != 1 && given != damped)
+        throw InvalidInput(modal->where,
+                           fmt::format("modal_ratio lists {} ratios for {} modes; give one for all, or one a "
+                                       "mode",
+                                       given, damped));
+      model_.damping = ratios;
+    } else if (const auto* rayleigh = std::get_if<RayleighDamping>(&description_.damping)) {
+      model_.damping = RayleighCoefficients{at_least_zero(rayleigh->mass, "rayleigh: mass"),
+                                            at_least_zero(rayleigh->stiffness, "rayleigh: stiffness")};
+    }
+  }
+
+  void take_sliders() {
+    for (const SliderDescription& description : description_.sliders) {
+      const std::string part = fmt::format("slider \"{}\"", description.name);
+      for (const Slider& other : model_.sliders)
+        if (other.name == description.name)
+          throw InvalidInput(description.where, fmt::format("two sliders are called \"{}\"", description.name));
+      if (places_.count(description.name) > 0)
+        throw InvalidInput(description.where,
+                           fmt::format("{} has the name of a coordinate; results would mix them up", part));
+      Slider slider;
+      slider.name = description.name;
+      join(description.between, description.between_where, part, slider.first, slider.second);
+      slider.stiffness = number(description.stiffness, part + ": stiffness");
+      if (!(slider.stiffness > 0.0))
+        throw InvalidInput(description.stiffness.where,
+                           fmt::format("{}: stiffness must be positive, got {}", part, slider.stiffness));
+      slider.limit = at_least_zero(description.friction_coefficient, part + ": friction_coefficient") *
+                     at_least_zero(description.normal_load, part + ": normal_load",
+                                   "; a slider cannot be pulled, its least load is 0");
+      model_.sliders.push_back(slider);
+    }
+  }
+
+  TimeLaw law(const TimeLawDescription& description, const std::string& part) const {
+    if (const auto* harmonic = std::get_if<HarmonicDescription>(&description)) {
+      const std::string key = harmonic->frequency_in_hertz ? "frequency" : "angular_frequency";
+      const double factor = harmonic->frequency_in_hertz ? 2.0 * std::numbers::pi : 1.0;
+      return HarmonicLaw{number(harmonic->amplitude, part + ": amplitude"),
+                         factor * at_least_zero(harmonic->angular_frequency, part + ": " + key),
+                         number(harmonic->phase, part + ": phase")};
+    }
+    if (const auto* formula = std::get_if<TimeFormulaDescription>(&description)) {
+      try {
+        return FormulaLaw{numerics::Expression(formula->formula.expression, parameters_, true)};
+      } catch (const InvalidInput& fault) {
+        throw InvalidInput(formula->formula.where, part + ": " + fault.message());
+      }
+    }
+    const auto& table = std::get<TableDescription>(description);
+    TableLaw values;
+    values.times = table.times;
+    values.values = table.values;
+    values.source = table.file;
+    if (table.beyond == TableDescription::Beyond::zero) values.beyond = TableLaw::Beyond::zero;
+    if (table.beyond == TableDescription::Beyond::hold) values.beyond = TableLaw::Beyond::hold;
+    return values;
+  }
+
+  void take_base_motion(const BaseMotionDescription& description) {
+    BaseMotion motion;
+    motion.law = law(description.law, "[base_motion]");
+    if (auto* harmonic = std::get_if<HarmonicLaw>(&motion.law)) {
+      const double omega = harmonic->angular_frequency;
+      if (description.of == BaseMotionDescription::Of::displacement) harmonic->amplitude *= -omega * omega;
+      if (description.of == BaseMotionDescription::Of::velocity) {
+        harmonic->amplitude *= omega;
+        harmonic->phase += 0.5 * std::numbers::pi;
+      }
+    }
+    motion.direction = Vector::Ones(model_.size());
+    if (!description.direction.empty()) {
+      motion.direction.setZero();
+      for (const auto& [name, share] : description.direction)
+        motion.direction[find(name, share.where, "[base_motion]: direction names")] =
+            number(share, "[base_motion]: direction of \"" + name + "\"");
+    }
+    model_.base_motion = motion;
+  }
+
+  const ModelDescription& description_;
+  const Parameters& parameters_;
+  Model model_;
+  std::unordered_map<std::string, Index> places_;
+};
+
+}  // namespace
+
+Model build(const ModelDescription& description, const Parameters& parameters) {
+  return Builder(description, parameters).build();
+}
+
+}  // namespace rubato::model

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+
+#include <Eigen/SparseCholesky>
+
+#include <span>
+#include <vector>
+
+namespace rubato::numerics {
+
+/// L D L^T of a sparse symmetric positive definite matrix whose chosen rows are eliminated last, so that the solution
+/// at those rows is known from the forward substitution alone, and may still be changed by forces there before the
+/// backward one: S x = b - P z with z a function of x at the chosen rows costs one solve.
+///
+/// Ordering: constrained approximate minimum degree (CAMD; Amestoy, Davis and Duff 2004).
+class OrderedLdlt {
+ public:
+  /// Orders and analyses a pattern.
+  /// @param matrix  [n x n], both triangles
+  /// @param last    rows to eliminate last, without doubles [k]
+  void analyse(const SparseMatrix& matrix, std::span<const Index> last);
+
+  /// Factorises a matrix of the analysed pattern. Returns false if it is not positive definite.
+  bool factorise(const SparseMatrix& matrix);
+
+  Index size() const { return n_; }
+  Index last_count() const { return k_; }
+  Index factor_entries() const { return static_cast<Index>(value_.size()); }
+
+  /// Position of a row in the permuted order: the chosen rows are the last k.
+  Index permuted(Index row) const { return position_[static_cast<std::size_t>(row)]; }
+  Index original(Index place) const { return order_[static_cast<std::size_t>(place)]; }
+
+  /// x <- L^-1 x, in the permuted order.
+  void forward(Vector& x) const;
+  /// x <- L^-T D^-1 x, in the permuted order.
+  void backward(Vector& x) const;
+  /// The solution at the last k rows from a forward-substituted right-hand side: out = (L22^-T D2^-1) x2 [k].
+  void last_solution(const Vector& x, Vector& out) const;
+  /// x2 <- x2 - L22^-1 r for a force r [k] on the last rows (overwritten): what the forward substitution of b - P r
+  /// would have given.
+  void subtract_from_last(Vector& r, Vector& x) const;
+  /// The inverse of the Schur complement of the last rows, (S^-1)22 [k x k].
+  Matrix last_inverse() const;
+
+  /// S x = b in the original order, for callers that need no more.
+  void solve(const Vector& b, Vector& x) const;
+
+ private:
+  Index n_ = 0, k_ = 0;
+  std::vector<int> order_, position_;
+  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::NaturalOrdering<int>> ldlt_;
+  std::vector<int> start_, row_;  // L without its unit diagonal, by columns
+  std::vector<double> value_, inverse_diagonal_;
+  mutable Vector scratch_;
+};
+
+}  // namespace rubato::numerics

@@ -1,0 +1,126 @@
+#include <rubato/core/error.hpp>
+#include <rubato/system/assemble.hpp>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+
+#include <cmath>
+#include <vector>
+
+namespace rubato::system {
+namespace {
+
+constexpr Index largest_modal_size = 2000;  // all modes of a dense eigenproblem; minutes beyond
+
+SparseMatrix from_elements(Index n, const std::vector<model::LinearElement>& elements) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& element : elements) {
+    if (element.first != ground) entries.emplace_back(element.first, element.first, element.coefficient);
+    if (element.second != ground) entries.emplace_back(element.second, element.second, element.coefficient);
+    if (element.first == ground || element.second == ground) continue;
+    entries.emplace_back(element.first, element.second, -element.coefficient);
+    entries.emplace_back(element.second, element.first, -element.coefficient);
+  }
+  SparseMatrix matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+SparseMatrix diagonal(const Vector& values) {
+  SparseMatrix matrix(values.size(), values.size());
+  matrix.reserve(Eigen::VectorXi::Constant(static_cast<int>(values.size()), 1));
+  for (Index i = 0; i < values.size(); ++i) matrix.insert(i, i) = values[i];
+  return matrix;
+}
+
+void require_positive_definite(const SparseMatrix& mass, const std::vector<std::string>& names) {
+  // The diagonal first: it names the coordinate.
+  const Vector entries = mass.diagonal();
+  for (Index i = 0; i < entries.size(); ++i)
+    if (!(entries[i] > 0.0))
+      throw InvalidInput(
+          fmt::format("the mass matrix is singular: coordinate \"{}\" has the mass {}; give it one, or "
+                      "remove it",
+                      names[static_cast<std::size_t>(i)], entries[i]));
+  const Eigen::SimplicialLLT<SparseMatrix> factor(mass);
+  if (factor.info() != Eigen::Success)
+    throw InvalidInput("the mass matrix is not positive definite: some motion of the coordinates has no mass");
+}
+
+// M Phi diag(2 zeta omega) Phi^T M with Phi^T M Phi = 1.
+SparseMatrix modal_damping(const model::ModalDampingRatios& damping, const SparseMatrix& mass,
+                           const SparseMatrix& stiffness) {
+  const Index n = mass.rows();
+  if (n > largest_modal_size)
+    throw InvalidInput(
+        fmt::format("damping by modes is for up to {} coordinates, the model has {}; take "
+                    "damping = {{ rayleigh = {{ mass = ..., stiffness = ... }} }}",
+                    largest_modal_size, n));
+  const Index damped = damping.modes < 0 ? n : damping.modes;
+  if (damped > n) throw InvalidInput(fmt::format("damping: modes = {}, but the model has {} coordinates", damped, n));
+  const auto given = static_cast<Index>(damping.ratios.size());
+  if (given != 1 && given != damped)
+    throw InvalidInput(
+        fmt::format("damping: modal_ratio lists {} ratios for {} damped modes; give one for all, or one "
+                    "a mode",
+                    given, damped));
+  const Matrix dense_mass(mass);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes{Matrix(stiffness), dense_mass};
+  if (modes.info() != Eigen::Success) throw InvalidInput("the modes of the model without sliders were not found");
+  Vector weight = Vector::Zero(n);
+  for (Index i = 0; i < damped; ++i) {
+    const double ratio = damping.ratios[static_cast<std::size_t>(given == 1 ? 0 : i)];
+    weight[i] = 2.0 * ratio * std::sqrt(std::max(modes.eigenvalues()[i], 0.0));
+  }
+  const Matrix shapes = dense_mass * modes.eigenvectors();
+  Matrix product = shapes * weight.asDiagonal() * shapes.transpose();
+  product = 0.5 * (product + product.transpose()).eval();
+  // Modes of parts that are not joined cancel but for round-off; zeros keep the pattern of the structure.
+  return product.sparseView(product.cwiseAbs().maxCoeff(), 1e-14);
+}
+
+SparseMatrix damping_matrix(const model::Damping& damping, const SparseMatrix& mass, const SparseMatrix& stiffness) {
+  if (const auto* modal = std::get_if<model::ModalDampingRatios>(&damping))
+    return modal_damping(*modal, mass, stiffness);
+  if (const auto* rayleigh = std::get_if<model::RayleighCoefficients>(&damping))
+    return rayleigh->mass * mass + rayleigh->stiffness * stiffness;
+  return SparseMatrix(mass.rows(), mass.cols());
+}
+
+Loads loads_of(const model::Model& model, const SparseMatrix& mass) {
+  std::vector<LoadTerm> terms;
+  for (const auto& force : model.forces) terms.push_back({{force.coordinate}, {1.0}, force.law});
+  if (model.base_motion) {
+    const Vector inertia = mass * model.base_motion->direction;
+    LoadTerm term{{}, {}, model.base_motion->law};
+    for (Index i = 0; i < inertia.size(); ++i) {
+      if (inertia[i] == 0.0) continue;
+      term.rows.push_back(i);
+      term.weights.push_back(-inertia[i]);
+    }
+    terms.push_back(std::move(term));
+  }
+  return Loads(std::move(terms));
+}
+
+}  // namespace
+
+LocallyNonlinear assemble(const model::Model& model) {
+  const Index n = model.size();
+  LocallyNonlinear::Parts parts;
+  parts.mass = model.matrices ? model.matrices->mass : diagonal(model.mass);
+  parts.stiffness = model.matrices ? model.matrices->stiffness : from_elements(n, model.springs);
+  require_positive_definite(parts.mass, model.coordinates);
+  parts.damping = damping_matrix(model.damping, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
+  if (model.matrices && model.matrices->damping.nonZeros() > 0)
+    parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
+  parts.sliders = model.sliders;
+  parts.loads = loads_of(model, parts.mass);
+  parts.start.q = model.position;
+  parts.start.v = model.velocity;
+  parts.coordinates = model.coordinates;
+  return LocallyNonlinear(std::move(parts));
+}
+
+}  // namespace rubato::system
