@@ -103,11 +103,12 @@ Digest digest(const TableSource& table, std::size_t variable, std::size_t labels
 
 }  // namespace
 
-std::string attributes_json(const Attributes& attributes) {
+std::string attributes_json(const Attributes& attributes, std::size_t longest) {
   std::string out = "{";
   for (const auto& [name, value] : attributes) {
     if (out.size() > 1) out += ',';
-    out += json_string(name) + ':' + json_string(value);
+    const std::string shown = value.size() > longest ? value.substr(0, longest) + "..." : value;
+    out += json_string(name) + ':' + json_string(shown);
   }
   return out + '}';
 }

@@ -28,7 +28,7 @@ struct Extent {
 /// through, in pieces, and its window once more.
 std::string table_json(const TableSource& table, const Extent& extent = {});
 
-/// {"name": "value", ...}
-std::string attributes_json(const Attributes& attributes);
+/// {"name": "value", ...}; a longer value is cut after so many bytes and ends in "...".
+std::string attributes_json(const Attributes& attributes, std::size_t longest = 4096);
 
 }  // namespace rubato::report

@@ -42,7 +42,7 @@ function complete_layout(layout, height, is_small) {
   return {
     height, autosize: true, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", hovermode: "closest",
     font: {family: "inherit", size: is_small ? 12 : 13, color: "#1c242c"},
-    margin: {l: 64, r: 16, t: 36, b: 48},
+    margin: {l: 64, r: 16, t: is_small ? 54 : 36, b: 48},
     legend: is_small ? {orientation: "h", x: 0, y: 1.02, yanchor: "bottom"}
                      : {x: 1.01, xanchor: "left", y: 1, bordercolor: "#d4dae0", borderwidth: 0, font: {size: 12}},
     hoverlabel: {bgcolor: "#ffffff", bordercolor: "#6c7680", font: {color: "#1c242c"}},
@@ -81,6 +81,7 @@ function make_figure({caption, draw, choosers = [], height = 380, is_small = fal
 
   function render(size = {}) {
     const {traces, layout} = draw(chosen);
+    plot.style.height = `${size.height ?? height}px`;
     const config = {
       responsive: true, displaylogo: false, displayModeBar: "hover", doubleClick: "reset",
       modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage", "sendChartToCloud"],
@@ -88,7 +89,7 @@ function make_figure({caption, draw, choosers = [], height = 380, is_small = fal
     figure.is_drawn = true;
     return Plotly.react(plot, traces, {...complete_layout(layout, height, is_small), ...size}, config);
   }
-  const figure = {node, plot, render, is_small, is_drawn: false};
+  const figure = {node, render, height, is_small, is_drawn: false};
   figures.push(figure);
   return node;
 }
@@ -108,15 +109,17 @@ function watch_figures() {
   }, {rootMargin: "100% 0px"});
   for (const figure of figures) observer.observe(figure.node);
 
-  const folded = [...document.querySelectorAll("details")];
+  const folded = [...document.querySelectorAll("details:not([open])")];
   window.addEventListener("beforeprint", () => {
     for (const details of folded) details.open = true;
     for (const figure of figures) {
       const width = figure.is_small ? (paper_width - paper_gap) / 2 : paper_width;
-      figure.render({width, autosize: false});
+      // Two full figures with their captions fit a page so.
+      figure.render({width, height: figure.is_small ? figure.height : 0.84 * figure.height, autosize: false});
     }
   });
   window.addEventListener("afterprint", () => {
+    for (const details of folded) details.open = false;
     for (const figure of figures) figure.render();
   });
 }

@@ -87,7 +87,7 @@ function response_figures(table) {
       }
       traces.push({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                    line: {color: "#e69f00", width: 1.4, dash: "dash"}});
-      const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2"} : {}), yaxis: axis(axis_label(variable))};
+      const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2", mirror: "all"} : {}), yaxis: axis(axis_label(variable))};
       if (exact) {
         const difference = line.y.map((value, row) => (value === null || exact[row] === null ? null : value - exact[row]));
         traces.push({type: "scatter", mode: "lines", x: line.x, y: difference, yaxis: "y2", name: "Difference",

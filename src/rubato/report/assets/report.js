@@ -22,7 +22,7 @@ function what_became(analysis) {
 function write_summary(parent) {
   const chapter = add_chapter(parent, "Summary");
   const statistics = (analysis) => Object.entries(analysis.attributes)
-    .filter(([name]) => !["type", "method", "step", "status", "message"].includes(name))
+    .filter(([name]) => !["type", "method", "step", "status", "message", "slider_stiffness", "slider_limit"].includes(name))
     .map(([name, value]) => `${name.replaceAll("_", " ")}: ${value}`).join("; ");
   chapter.node.append(...data.analyses.map(what_became).filter((node) => node));
   add_section(chapter, "Analyses", make_table({

@@ -33,9 +33,8 @@ function lines_over_rows(table, variable, range) {
 function history_figure(table, variables, subject) {
   const choosers = [{label: "Quantity", options: variables.map((variable) => phrase(variable.name))}];
   if (table.window) choosers.push(whole_or_window);
-  const others = variables.length > 1 ? " The buttons above choose the quantity." : "";
   return make_figure({
-    caption: `${subject} over ${table.variables[0].name}.${others} ${overview_text(table)}${shortened(variables[0])}`,
+    caption: `${subject} over ${table.variables[0].name}. ${overview_text(table)}${shortened(variables[0])}`,
     choosers, height: 400,
     draw: ([quantity, range = 0]) => ({
       traces: lines_over_rows(table, variables[quantity], range),
@@ -77,6 +76,15 @@ function relative_displacement(table, force, label) {
   return {title: "Slip [m]", values: columns[slip.index][label]};
 }
 
+/** The Coulomb limits of a slider, where the results tell them. */
+function limit_lines(table, label, values) {
+  const limit = (table.attributes.slider_limit ?? "").split(/[\s,]+/).map(Number)[label];
+  const [low, high] = padded_range([values]) ?? [0, 0];
+  if (!(limit > 0)) return [];
+  return [{type: "scatter", mode: "lines", x: [low, high, null, low, high], y: [limit, limit, null, -limit, -limit], name: "±μN",
+           line: {color: "#6c7680", width: 1, dash: "dash"}, hoverinfo: "name", showlegend: true}];
+}
+
 function hysteresis_loops(table, force) {
   const most = 12;
   const columns = columns_of(table, 1);
@@ -88,7 +96,7 @@ function hysteresis_loops(table, force) {
     return make_figure({
       caption: `Hysteresis loop of ${force.labels[label]}. ${window_text(table)}${rest}`, height: 320, is_small: true,
       draw: () => ({
-        traces: [{type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
+        traces: [...limit_lines(table, label, displacement.values), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
                   line: {...line_style(label), dash: "solid"}, showlegend: true}],
         layout: {xaxis: axis(displacement.title, {range: padded_range([displacement.values])}),
                  yaxis: axis(axis_label(force), {range: padded_range([y])})},
