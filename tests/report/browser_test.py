@@ -159,6 +159,15 @@ class Report(unittest.TestCase):
         self.assertEqual(self.browser.wait("return [...document.querySelectorAll('figure')].at(-1)"
                                            ".querySelector('.legendtext')?.textContent"), "bl\"ade</script><b>\u03a9")
 
+    def test_each_slider_has_its_loop_over_the_relative_displacement(self):
+        for name in ("contact1", "contact2", "pad"):
+            figure = self.browser.script(
+                "const figure = [...document.querySelectorAll('figure')].find((candidate) =>"
+                "  candidate.textContent.includes(`Hysteresis loop of ${arguments[0]}.`));"
+                "figure.scrollIntoView({behavior: 'instant'}); return figure.id", name)
+            self.assertEqual(self.browser.wait(f"return document.querySelector('#{figure} .xtitle')?.textContent"),
+                             "Relative displacement [m]")
+
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))
 

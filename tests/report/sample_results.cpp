@@ -87,14 +87,20 @@ void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energ
   }
 }
 
+std::string repeated(double value, std::size_t times) {
+  std::string out;
+  for (std::size_t i = 0; i < times; ++i) out += (i > 0 ? ", " : "") + std::to_string(value);
+  return out;
+}
+
 void add_transient(results::Sink& sink, const std::string& name, const SmallModel& model, double h, int steps,
                    const std::string& status, const std::string& message) {
   results::TableLayout layout{name, "", "time", {column("time", "s")}, {}};
   layout.attributes = {{"type", "transient"},
                        {"method", "generalized_alpha (rho_inf = 0.9)"},
                        {"step", std::to_string(h) + " s"},
-                       {"slider_stiffness", std::to_string(model.slider_stiffness)},
-                       {"slider_limit", std::to_string(model.limit)}};
+                       {"slider_stiffness", repeated(model.slider_stiffness, model.sliders.size())},
+                       {"slider_limit", repeated(model.limit, model.sliders.size())}};
   layout.blocks.push_back(column("position", "m", "coordinate", model.coordinates));
   layout.blocks.push_back(column("velocity", "m/s", "coordinate", model.coordinates));
   layout.blocks.push_back(column("acceleration", "m/s2", "coordinate", model.coordinates));

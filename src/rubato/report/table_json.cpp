@@ -12,7 +12,7 @@ namespace {
 // Enough that a column of the row coordinate resolves steps of 1e-7 of its range; the others are for the eye.
 constexpr int coordinate_digits = 10;
 constexpr int value_digits = 7;
-// Rows read at once: 24 labels of them are 1.5 MB.
+// Rows read at once: 32 labels of them are 2 MB.
 constexpr std::size_t piece_rows = 8192;
 
 using Columns = std::vector<std::vector<double>>;  // [labels][rows]

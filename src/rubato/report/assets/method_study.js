@@ -71,14 +71,18 @@ function stability_figure(table, variable) {
   });
 }
 
-/** For each method: its response beside the exact one, and their difference below. */
-function response_figures(table) {
+/**
+ * For each method: its response beside the exact one, and their difference below. Where the table is too long to be
+ * shown whole its last rows are: the extremes of buckets fall on other rows for each method and cannot be subtracted.
+ */
+function response_figures(whole) {
+  const table = {...whole, overview: whole.window ?? whole.overview};
   const variable = variable_of(table, "position") ?? plotted_variables(table)[0];
   const named = variable_of(table, "exact");
   const series = series_of(table, variable);
   const exact = named ? table.overview[named.index][0] : series.find((line) => line.name === "exact")?.y;
   return series.filter((line) => line.name !== "exact").map((line) => make_figure({
-    caption: `${line.name}: response beside the exact one, and their difference below. ${overview_text(table)}`,
+    caption: `${line.name}: response beside the exact one, and their difference below. ${window_text(whole)}`,
     height: 360, is_small: true,
     draw: () => {
       const traces = [];

@@ -34,7 +34,7 @@ function write_summary(parent) {
               method ?? "–", step ?? "–", badge(status), statistics(analysis) || "–"];
     }),
   }));
-  const facts = Object.entries(data.attributes).filter(([name]) => !["title", "study"].includes(name))
+  const facts = Object.entries(data.attributes).filter(([name]) => !["title", "study", "Conventions", "source"].includes(name))
     .map(([name, value]) => [phrase(name), value]);
   add_section(chapter, "Provenance", definitions([...facts, ["Results file", data.results_file]]));
   if (data.attributes.study) {

@@ -156,7 +156,8 @@ function key_numbers(table, variables, caption) {
 
 function is_transient(analysis) {
   const table = analysis.tables[0];
-  return table && table.name === "" && table.row_dimension === "time" && variable_of(table, "position") !== null;
+  return table && table.name === "" && table.row_dimension === "time" &&
+    (variable_of(table, "position") !== null || analysis.attributes.type === "transient");
 }
 
 function write_transient(chapter, analysis) {
@@ -165,19 +166,23 @@ function write_transient(chapter, analysis) {
   const motion = of(["position", "velocity", "acceleration"]);
   const sliders = of(["force", "slip", "displacement"]);
   const ledger = analysis.tables.find((candidate) => candidate.name === "energy");
+  if (table.rows === 0) {
+    chapter.node.append(element("p", {class: "note"}, "It ended before its first row."));
+    return;
+  }
   if (motion.length) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
     if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
   }
   if (sliders.length) {
-    add_section(chapter, "Sliders", history_figure(table, sliders, "Force, slip and relative displacement of the sliders"));
+    add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const force = variable_of(table, "force");
     if (force && (variable_of(table, "slip") || variable_of(table, "displacement"))) {
       add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
     }
   }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (table.key_numbers) {
+  if (table.key_numbers && motion.length + sliders.length) {
     const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
       "last tenth of the duration. All rows count.";
     const numbers = [];
