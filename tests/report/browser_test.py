@@ -37,7 +37,12 @@ class Browser:
         capabilities = {"goog:chromeOptions": {"binary": shutil.which("chromium"), "args": arguments},
                         "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
         self.session = ""
-        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        try:
+            session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
+        except Exception:
+            self.driver.terminate()
+            raise
+        self.session = "/session/" + session["sessionId"]
         self.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
 
     def call(self, verb, path, body=None):
@@ -78,6 +83,7 @@ class Browser:
         finally:
             self.driver.terminate()
             self.driver.wait()
+            self.driver.stdout.close()
 
 
 class Report(unittest.TestCase):
