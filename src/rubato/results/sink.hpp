@@ -9,9 +9,9 @@
 // Labelled rows on their way to files, without knowing files. io implements the sinks for netCDF and CSV.
 namespace rubato::results {
 
-/// One quantity for several things: `position [m]` of each coordinate. In netCDF a variable (row, `dimension`); in CSV a
-/// column `LABEL.VARIABLE [UNIT]` a label. With an empty `dimension`, one value a row: the CSV column is
-/// `VARIABLE [UNIT]` (` [UNIT]` only where the unit is not empty).
+/// One quantity for several things: `position [m]` of each coordinate. In netCDF a variable (row, `dimension`); in CSV
+/// a column `LABEL.VARIABLE [UNIT]` a label. With an empty `dimension`, one value a row: the CSV column is `VARIABLE
+/// [UNIT]` (` [UNIT]` only where the unit is not empty).
 struct Block {
   std::string variable;             ///< "position"
   std::string unit;                 ///< "m"; "1" is written as no unit
@@ -28,9 +28,9 @@ struct Block {
 /// A table that grows by rows. A row is the values of its blocks one after another; the first block is the row's
 /// coordinate variable (time, frequency), with no dimension.
 struct TableLayout {
-  std::string analysis;             ///< the analysis's name: netCDF group, and CSV file `ANALYSIS.csv`
-  std::string table;                ///< empty for the main table; "energy": `ANALYSIS.energy.csv`, netCDF subgroup "energy"
-  std::string row_dimension;        ///< "time"
+  std::string analysis;       ///< the analysis's name: netCDF group, and CSV file `ANALYSIS.csv`
+  std::string table;          ///< empty for the main table; "energy": `ANALYSIS.energy.csv`, netCDF subgroup "energy"
+  std::string row_dimension;  ///< "time"
   std::vector<Block> blocks;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< for people and programs: method, step, ...
 

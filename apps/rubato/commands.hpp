@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+// What the subcommands do once their options are read. Each returns the exit status: 0 done, 2 the study or the options
+// are wrong, 3 the mathematics or the output failed, 130 interrupted. Faults of the user's world leave as InvalidInput.
+namespace rubato::app {
+
+inline constexpr int exit_done = 0, exit_wrong = 2, exit_failed = 3, exit_interrupted = 130;
+
+struct StudyOptions {
+  std::filesystem::path study;
+  std::vector<std::string> set;   ///< PARAM=VALUE
+  std::vector<std::string> only;  ///< names of analyses
+};
+
+struct RunOptions {
+  StudyOptions study;
+  std::filesystem::path folder;  ///< empty: results/ beside the study
+  bool quiet = false;
+  std::string command;  ///< as it was called, for the provenance
+};
+
+int run(const RunOptions& options);
+int check(const StudyOptions& options);
+int list_methods();
+int show_method(const std::string& name, const std::vector<std::string>& parameters, bool csv);
+int list_examples();
+int copy_example(const std::string& name, const std::filesystem::path& folder);
+
+}  // namespace rubato::app

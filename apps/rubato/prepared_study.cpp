@@ -1,0 +1,75 @@
+#include "prepared_study.hpp"
+
+#include <rubato/io/read_study.hpp>
+#include <rubato/model/model.hpp>
+#include <rubato/system/assemble.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace rubato::app {
+namespace {
+
+numerics::Parameters overrides_of(const std::vector<std::string>& settings) {
+  numerics::Parameters values;
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw InvalidInput(fmt::format("--set {}: write PARAM=VALUE, such as --set N0=25", setting));
+    const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
+    try {
+      values.emplace_back(name, numerics::Expression(text, {})());
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(fmt::format("--set {}: {}", setting, fault.message()));
+    }
+  }
+  return values;
+}
+
+std::vector<model::AnalysisDescription> chosen(const model::StudyDescription& study,
+                                               const std::vector<std::string>& only) {
+  if (study.analyses.empty())
+    throw InvalidInput({study.file, 0, 0}, "the study has no [[analysis]]; add one, such as type = \"transient\"");
+  if (only.empty()) return study.analyses;
+  std::vector<std::string> known;
+  for (const auto& analysis : study.analyses) known.push_back(analysis.name);
+  for (const std::string& name : only)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InvalidInput(fmt::format("--only {}: no such analysis{}", name, suggestion(name, known)));
+  std::vector<model::AnalysisDescription> analyses;
+  for (const auto& analysis : study.analyses)
+    if (std::find(only.begin(), only.end(), analysis.name) != only.end()) analyses.push_back(analysis);
+  return analyses;
+}
+
+system::LocallyNonlinear assembled(const model::StudyDescription& study, const numerics::Parameters& parameters) {
+  try {
+    return system::assemble(model::build(study.model, parameters));
+  } catch (const InvalidInput& fault) {
+    if (!fault.where().file.empty()) throw;
+    throw InvalidInput({study.file, 0, 0}, fault.message());
+  }
+}
+
+}  // namespace
+
+double PreparedStudy::expected_bytes() const {
+  double bytes = 0.0;
+  for (const auto& outline : outlines) bytes += outline.expected_bytes;
+  return bytes;
+}
+
+PreparedStudy prepare(const StudyOptions& options) {
+  const numerics::Parameters overrides = overrides_of(options.set);
+  model::StudyDescription study = io::read_study(options.study);
+  const numerics::Parameters parameters = model::evaluate_parameters(study.parameters, overrides);
+  const auto analyses = chosen(study, options.only);
+  PreparedStudy prepared{study, parameters, analyses, {}, assembled(study, parameters)};
+  for (const auto& analysis : analyses)
+    prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.system, parameters));
+  return prepared;
+}
+
+}  // namespace rubato::app

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "commands.hpp"
+
+#include <rubato/analysis/run_study.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <vector>
+
+namespace rubato::app {
+
+/// A study read, evaluated, assembled and found possible, with the analyses that are asked for.
+struct PreparedStudy {
+  model::StudyDescription description;
+  numerics::Parameters parameters;
+  std::vector<model::AnalysisDescription> analyses;
+  std::vector<analysis::AnalysisOutline> outlines;  ///< of each analysis
+  system::LocallyNonlinear system;
+
+  double expected_bytes() const;
+};
+
+/// Throws InvalidInput.
+PreparedStudy prepare(const StudyOptions& options);
+
+}  // namespace rubato::app

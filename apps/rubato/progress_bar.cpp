@@ -1,0 +1,67 @@
+#include "progress_bar.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace rubato::app {
+namespace {
+
+std::string duration(double seconds) {
+  if (seconds < 60.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 3600.0)
+    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
+  return fmt::format("{:.0f} h {:02.0f} min", std::floor(seconds / 3600.0), std::fmod(seconds, 3600.0) / 60.0);
+}
+
+std::string rate(double per_second, const std::string& unit) {
+  if (per_second >= 1e6) return fmt::format("{:.1f} million {}/s", per_second / 1e6, unit);
+  return fmt::format("{:.0f} {}/s", per_second, unit);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(bool quiet) : quiet_(quiet), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void ProgressBar::begin(const std::string& what, double total, const std::string& unit) {
+  what_ = what;
+  unit_ = unit;
+  total_ = total;
+  done_ = 0.0;
+  start_ = last_ = Clock::now();
+}
+
+void ProgressBar::advance(double done) {
+  done_ = done;
+  if (quiet_) return;
+  const auto now = Clock::now();
+  if (now - last_ < (is_terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
+  last_ = now;
+  draw(false);
+}
+
+void ProgressBar::end() {
+  if (!quiet_) draw(true);
+}
+
+void ProgressBar::draw(bool is_last) {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  const double share = total_ > 0.0 ? std::min(done_ / total_, 1.0) : 1.0;
+  const double speed = seconds > 0.0 ? done_ / seconds : 0.0;
+  std::string line = fmt::format("{}: {:.0f} of {:.0f} {} ({:.0f} %)", what_, done_, total_, unit_, 100.0 * share);
+  if (seconds > 0.05) line += ", " + rate(speed, unit_);
+  line += is_last ? ", " + duration(seconds) : speed > 0.0 ? ", " + duration((total_ - done_) / speed) + " left" : "";
+  if (!is_terminal_) {
+    fmt::print(stderr, "{}\n", line);
+    return;
+  }
+  const int filled = static_cast<int>(share * 24.0);
+  fmt::print(stderr, "\r\033[K[{}{}] {}{}", std::string(static_cast<std::size_t>(filled), '#'),
+             std::string(static_cast<std::size_t>(24 - filled), '.'), line, is_last ? "\n" : "");
+  std::fflush(stderr);
+}
+
+}  // namespace rubato::app

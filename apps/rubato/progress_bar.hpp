@@ -1,0 +1,30 @@
+#pragma once
+
+#include <rubato/analysis/run_context.hpp>
+
+#include <chrono>
+#include <string>
+
+namespace rubato::app {
+
+/// On a terminal a bar with rate and time left, redrawn ten times a second; elsewhere a plain line every ten seconds,
+/// and one at the end. Everything goes to stderr.
+class ProgressBar final : public analysis::Progress {
+ public:
+  explicit ProgressBar(bool quiet);
+
+  void begin(const std::string& what, double total, const std::string& unit) override;
+  void advance(double done) override;
+  void end() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(bool is_last);
+
+  bool quiet_, is_terminal_;
+  std::string what_, unit_;
+  double total_ = 0.0, done_ = 0.0;
+  Clock::time_point start_, last_;
+};
+
+}  // namespace rubato::app

@@ -1,0 +1,10 @@
+# The headers are the reference; Doxygen makes pages of them.
+find_package(Doxygen REQUIRED)
+set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/reference)
+set(DOXYGEN_FILE_PATTERNS *.hpp)
+set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/src)
+set(DOXYGEN_EXTRACT_ALL YES)
+set(DOXYGEN_QUIET YES)
+set(DOXYGEN_GENERATE_LATEX NO)
+set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
+doxygen_add_docs(reference ${PROJECT_SOURCE_DIR}/src/rubato ${PROJECT_SOURCE_DIR}/README.md)

@@ -1,0 +1,211 @@
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/exact/first_crossing.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr Index largest_size = 300;  // dense products of every piece; beyond, a step method is faster by far
+constexpr double at_limit = 1e-13;   // relative distance of a force from its limit that is round-off of the location
+constexpr double at_rest = 1e-12;    // likewise of a term of u against its largest
+constexpr long most_without_time = 200;
+
+int sign(SliderState state) { return static_cast<int>(state); }
+
+void require_possible(const system::LocallyNonlinear& system) {
+  if (system.size() > largest_size)
+    throw InvalidInput(
+        fmt::format("the method exact is for up to {} coordinates, the model has {}; take "
+                    "\"generalized_alpha\" with a small step",
+                    largest_size, system.size()));
+  for (const auto& term : system.loads().terms())
+    if (const auto* formula = std::get_if<model::FormulaLaw>(&term.law))
+      throw InvalidInput(
+          fmt::format("the method exact knows harmonic loads and tables, not the formula \"{}\" of t; give "
+                      "it as a table, or take \"generalized_alpha\"",
+                      formula->formula.text()));
+}
+
+const system::LocallyNonlinear& checked(const system::LocallyNonlinear& system) {
+  require_possible(system);
+  return system;
+}
+
+}  // namespace
+
+ExactFlow::ExactFlow(const system::LocallyNonlinear& system)
+    : system_(checked(system)),
+      piece_(system),
+      states_(static_cast<std::size_t>(system.slider_count()), SliderState::stick),
+      decided_(states_),
+      critical_(states_.size(), false),
+      margin_(TaylorPiece::degree + 1) {}
+
+// Sliders at their limit are snapped to it, and stick or slip by the first term of u that is not round-off. Deciding
+// one changes later terms of the others only, so that the decision is repeated until it stands.
+void ExactFlow::decide_states(system::State& state, double table_end) {
+  const auto m = static_cast<Index>(states_.size());
+  for (Index i = 0; i < m; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double limit = system_.sliders()[k].limit;
+    double& force = state.slider_force[i];
+    critical_[k] = std::abs(force) >= limit * (1.0 - at_limit);
+    if (critical_[k]) force = std::copysign(limit, force);
+    // A slider at its limit that keeps its state is the likeliest; one inside sticks.
+    if (!critical_[k]) states_[k] = SliderState::stick;
+    if (is_idle(i)) states_[k] = SliderState::slip_positive;
+  }
+  for (Index round = 0; round < m + 3; ++round) {
+    piece_.start(state, states_, table_end);
+    const double tau = piece_.max_length();
+    bool stands = true;
+    for (Index i = 0; i < m; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!critical_[k] || is_idle(i)) continue;
+      const double* u = piece_.relative_displacement(i);
+      double size = 0.0, power = 1.0;
+      for (int order = 0; order <= TaylorPiece::degree; ++order, power *= tau)
+        size = std::max(size, std::abs(u[order]) * power);
+      const double limit = system_.sliders()[k].limit;
+      size = std::max(size, limit / system_.sliders()[k].stiffness);
+      SliderState next = SliderState::stick;
+      power = tau;
+      for (int order = 1; order <= 6; ++order, power *= tau) {
+        if (!(std::abs(u[order]) * power > at_rest * size)) continue;
+        const bool outward = u[order] * state.slider_force[i] > 0.0;
+        if (outward) next = state.slider_force[i] > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
+        break;
+      }
+      if (next == states_[k]) continue;
+      states_[k] = next;
+      stands = false;
+    }
+    if (stands) return;
+  }
+}
+
+double ExactFlow::next_event(double length, Index& slider) {
+  double first = -1.0;
+  const auto consider = [&](Index i, double reach) {
+    const double s = first_crossing(margin_, reach);
+    if (s < 0.0 || (first >= 0.0 && s >= first)) return;
+    first = s;
+    slider = i;
+  };
+  for (Index i = 0; i < static_cast<Index>(states_.size()); ++i) {
+    if (is_idle(i)) continue;
+    const auto& element = system_.sliders()[static_cast<std::size_t>(i)];
+    const double* u = piece_.relative_displacement(i);
+    const SliderState state = states_[static_cast<std::size_t>(i)];
+    const double reach = first < 0.0 ? length : first;
+    if (state != SliderState::stick) {  // margin: the rate of slip
+      margin_.back() = 0.0;
+      for (std::size_t k = 0; k + 1 < margin_.size(); ++k)
+        margin_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
+      if (std::abs(margin_[0]) * piece_.max_length() <= at_rest * element.limit / element.stiffness) margin_[0] = 0.0;
+      consider(i, reach);
+      continue;
+    }
+    for (const int side : {1, -1}) {  // margin: limit - side * force
+      for (std::size_t k = 0; k < margin_.size(); ++k) margin_[k] = -side * element.stiffness * u[k];
+      margin_[0] += element.limit - side * piece_.offset(i);
+      // At the limit and, but for round-off, at rest: it has been decided that it moves inward.
+      if (std::abs(margin_[0]) <= 2.0 * at_limit * element.limit) {
+        margin_[0] = 0.0;
+        if (std::abs(margin_[1]) * piece_.max_length() <= at_rest * element.limit) margin_[1] = 0.0;
+      }
+      consider(i, first < 0.0 ? length : first);
+    }
+  }
+  return first;
+}
+
+ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<const double> samples,
+                               ExactVisitor& visitor, bool with_work) {
+  ExactReport report;
+  ExactWork work;
+  const std::vector<double> breaks = system_.loads().breakpoints(state.t, t_end);
+  std::size_t next_break = 0, next_sample = 0;
+  long without_time = 0;
+  now_ = state;
+  // Where forces stand tells the states; the first decision sees all sliders.
+  for (std::size_t k = 0; k < states_.size(); ++k) states_[k] = SliderState::stick;
+  const auto table_end = [&] { return next_break < breaks.size() ? breaks[next_break] : t_end; };
+  decide_states(state, table_end());
+
+  // Books the work of the present piece from `from` to `to`.
+  const auto book = [&](double from, double to) {
+    if (!with_work || !(to > from)) return;
+    piece_.add_work(from, to, work.damper, work.load);
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      if (states_[k] == SliderState::stick) continue;
+      const std::span<const double> u(piece_.relative_displacement(static_cast<Index>(k)), TaylorPiece::degree + 1);
+      work.slider += sign(states_[k]) * system_.sliders()[k].limit * (polynomial(u, to) - polynomial(u, from));
+    }
+  };
+
+  while (state.t < t_end || next_sample < samples.size()) {
+    const double piece_end = std::min(t_end, table_end());
+    double length = std::min(piece_.max_length(), piece_end - state.t);
+    const bool reaches_end = length >= piece_end - state.t;
+    Index slider = -1;
+    const double event = length > 0.0 ? next_event(length, slider) : -1.0;
+    if (event >= 0.0) length = event;
+    const double end = event >= 0.0 ? state.t + length : reaches_end ? piece_end : state.t + length;
+    double booked = 0.0;
+    while (next_sample < samples.size() && samples[next_sample] <= end) {
+      const double s = std::clamp(samples[next_sample] - state.t, 0.0, length);
+      now_.t = samples[next_sample];
+      piece_.evaluate(s, now_);
+      book(booked, s);
+      booked = std::max(booked, s);
+      ++next_sample;
+      if (visitor.sample(now_, work)) continue;
+      std::swap(state, now_);
+      report.end = ExactEnd::stopped;
+      return report;
+    }
+    if (!(state.t < t_end)) break;
+    book(booked, length);
+    now_.t = end;
+    piece_.evaluate(length, now_);
+    without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
+    std::swap(state, now_);
+    if (!piece_.is_finite() || !state.v.allFinite()) {
+      report.end = ExactEnd::not_finite;
+      return report;
+    }
+    if (next_break < breaks.size() && state.t >= breaks[next_break]) ++next_break;
+    if (event < 0.0) {
+      piece_.start(state, states_, table_end());
+      if (state.t >= t_end) continue;
+      if (next_break > 0 && state.t == breaks[next_break - 1]) decide_states(state, table_end());
+      continue;
+    }
+    // The slider of the event is at its limit by construction: round-off of the location may not say otherwise.
+    const auto k = static_cast<std::size_t>(slider);
+    state.slider_force[slider] = std::copysign(system_.sliders()[k].limit, state.slider_force[slider]);
+    decided_ = states_;
+    decide_states(state, table_end());
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      if (states_[i] == decided_[i]) continue;
+      ++report.transitions;
+      if (visitor.transition(state, {state.t, static_cast<Index>(i), states_[i]}, work)) continue;
+      report.end = ExactEnd::stopped;
+      return report;
+    }
+    if (without_time > most_without_time) {
+      report.end = ExactEnd::chattering;
+      report.worst = slider;
+      return report;
+    }
+  }
+  return report;
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <map>
+#include <vector>
+
+namespace rubato::integrate {
+
+/// What a slider does in a piece: sticks, or slips with its force at plus or minus the limit.
+enum class SliderState : signed char { slip_negative = -1, stick = 0, slip_positive = 1 };
+
+/// The solution over a short time in which no slider changes its state: a Taylor polynomial of degree 20 about the
+/// start, exact to round-off up to max_length(). The equations are linear with constant coefficients,
+///
+///   M a = f(t) - C v - (K + sum of kT b b^T over the sticking) q - B c,
+///
+/// so that each coefficient follows from the one before by two products, whatever roots the structure has: repeated,
+/// overdamped or zero. Harmonic loads obey their own equation l' = -w m, m' = w l; tables are linear in time.
+class TaylorPiece {
+ public:
+  static constexpr int degree = 20;
+
+  /// Throws nothing; the system must be checked before (see ExactFlow).
+  explicit TaylorPiece(const system::LocallyNonlinear& system);
+
+  /// Makes the piece that starts at a state.
+  /// @param states  of the sliders [m]
+  /// @param table_end  a time to which every table is linear from state.t on [s]
+  void start(const system::State& state, const std::vector<SliderState>& states, double table_end);
+
+  /// How far the polynomial is exact [s].
+  double max_length() const { return operators_->length; }
+
+  /// q and v at s after the start, and the slider forces there.
+  void evaluate(double s, system::State& state) const;
+  void evaluate(double s, Vector& q, Vector& v) const;
+
+  /// Coefficients of u = x_first - x_second of a slider.
+  const double* relative_displacement(Index slider) const { return u_.col(slider).data(); }
+  /// The part of a slider's force that does not move with u: fc = kT u + offset while it sticks, fc = offset otherwise.
+  double offset(Index slider) const { return offset_[slider]; }
+
+  /// Work of the dampers and of the loads over [from, to] after the start, by Gauss-Legendre quadrature of 16 points:
+  /// exact to the degree of what is integrated.
+  void add_work(double from, double to, double& damper, double& load) const;
+
+  bool is_finite() const;
+  long created_operators() const { return static_cast<long>(cache_.size()); }
+
+ private:
+  struct Operators {
+    Matrix stiffness;  // M^-1 (K + stuck)
+    double length;
+  };
+  const Operators& operators_of(const std::vector<SliderState>& states);
+
+  const system::LocallyNonlinear& system_;
+  system::Loads loads_;
+  Index n_, m_, terms_;
+  Matrix damping_, load_pattern_, joins_;  // M^-1 C, M^-1 P, M^-1 B
+  Matrix dense_damping_, inverse_root_;    // C; L^-1 of M = L L^T
+  Matrix pattern_;
+  std::map<std::vector<SliderState>, Operators> cache_;
+  const Operators* operators_ = nullptr;
+  std::vector<SliderState> states_;
+  Matrix q_, v_, u_, load_;  // coefficients by columns of degree; u and loads by columns of slider and term
+  Vector offset_;
+  mutable Vector work_q_, work_v_, work_product_;
+  double largest_load_frequency_ = 0.0;
+};
+
+}  // namespace rubato::integrate
