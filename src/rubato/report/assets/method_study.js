@@ -59,14 +59,16 @@ function ladder_figure(table, variable) {
 
 function stability_figure(table, variable) {
   const series = series_of(table, variable);
-  // Beyond its limit an explicit method's radius grows without bound and would flatten the others.
-  const range = variable.name === "spectral_radius" ? {range: [0, 1.6]} : {};
+  // Beyond its limit an explicit method's radius grows without bound, and beyond pi a sampled period is that of an alias:
+  // either would flatten the others. Zooming out shows them.
+  const ranges = {spectral_radius: [0, 1.6], period_elongation: [-0.4, 1.6], numerical_damping: [-0.1, 0.6]};
   return make_figure({
-    caption: `${phrase(variable.name)} of each method over the step times the angular frequency of a mode.`, height: 460,
+    caption: `${phrase(variable.name)} of each method over the step times the angular frequency of a mode.`,
+    height: Math.max(460, 110 + 19 * series.length),
     draw: () => ({
       traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                                             line: line_style(index)})),
-      layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable), range)},
+      layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable), {range: ranges[variable.name]})},
     }),
   });
 }
@@ -113,11 +115,17 @@ function write_method_study(chapter, analysis, theory) {
   if (ladder) {
     add_section(chapter, "Error against step", plotted_variables(ladder).map((variable) => ladder_figure(ladder, variable)));
   }
+  const unstable = of("unstable");
   if (response) add_section(chapter, "Responses", element("div", {class: "pair"}, response_figures(response)));
   if (stability) {
     add_section(chapter, "Spectral properties", plotted_variables(stability).map((variable) => stability_figure(stability, variable)));
   }
+  if (unstable) {
+    const {step, stability_limit} = unstable.attributes;
+    add_section(chapter, "Beyond the stability limit", element(
+      "p", {}, `A step of ${step}, beyond the limit of ${stability_limit}.`), element("div", {class: "pair"}, response_figures(unstable)));
+  }
   write_theory(chapter, theory);
-  const known = [main, ladder, stability, response];
-  write_tables(chapter, analysis.tables.filter((table) => !known.includes(table)));
+  const known = [main, ladder, stability, response, unstable];
+  write_tables(chapter, analysis.tables.filter((table) => !known.includes(table)), 10);
 }

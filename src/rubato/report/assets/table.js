@@ -28,7 +28,8 @@ function results_table(table, caption, digits = 6) {
   table.variables.forEach((variable, index) => {
     table.overview[index].forEach((values, label) => {
       const name = variable.dimension ? `${variable.labels[label]} ${axis_label(variable)}` : axis_label(variable);
-      const words = variable.categories;
+      // netCDF keeps words without blanks; only names of methods have underscores of their own.
+      const words = variable.categories.map((word) => (variable.name === "method" ? word : word.replaceAll("_", " ")));
       columns.push({title: words.length ? phrase(variable.name) : name, is_text: words.length > 0,
                     cells: values.map((value) => (words.length ? words[value] ?? "–" : number_node(value, digits)))});
     });
