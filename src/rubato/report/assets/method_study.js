@@ -121,9 +121,9 @@ function write_method_study(chapter, analysis, theory) {
     add_section(chapter, "Spectral properties", plotted_variables(stability).map((variable) => stability_figure(stability, variable)));
   }
   if (unstable) {
-    const {step, stability_limit} = unstable.attributes;
+    const [step, limit] = ["step", "stability_limit"].map((name) => Number(parseFloat(unstable.attributes[name]).toPrecision(6)));
     add_section(chapter, "Beyond the stability limit", element(
-      "p", {}, `A step of ${step}, beyond the limit of ${stability_limit}.`), element("div", {class: "pair"}, response_figures(unstable)));
+      "p", {}, `A step of ${step} s, beyond the limit of ${limit} s.`), element("div", {class: "pair"}, response_figures(unstable)));
   }
   write_theory(chapter, theory);
   const known = [main, ladder, stability, response, unstable];
