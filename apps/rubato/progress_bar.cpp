@@ -19,6 +19,7 @@ std::string duration(double seconds) {
 
 std::string rate(double per_second, const std::string& unit) {
   if (per_second >= 1e6) return fmt::format("{:.1f} million {}/s", per_second / 1e6, unit);
+  if (per_second < 1000.0) return fmt::format("{:.3g} {}/s", per_second, unit);
   return fmt::format("{:.0f} {}/s", per_second, unit);
 }
 
@@ -51,7 +52,7 @@ void ProgressBar::draw(bool is_last) {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   const double share = total_ > 0.0 ? std::min(done_ / total_, 1.0) : 1.0;
   const double speed = seconds > 0.0 ? done_ / seconds : 0.0;
-  std::string line = fmt::format("{}: {:.0f} of {:.0f} {} ({:.0f} %)", what_, done_, total_, unit_, 100.0 * share);
+  std::string line = fmt::format("{}: {:.10g} of {:.10g} {} ({:.0f} %)", what_, done_, total_, unit_, 100.0 * share);
   if (seconds > 0.05) line += ", " + rate(speed, unit_);
   line += is_last ? ", " + duration(seconds) : speed > 0.0 ? ", " + duration((total_ - done_) / speed) + " left" : "";
   if (!is_terminal_) {

@@ -52,7 +52,7 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
     return outline(plan, system);
   }
   const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
-  check_method_study(analysis.name, study, system, parameters);
+  check_method_study(analysis.name, analysis.where, study, system, parameters);
   return {"method study: errors, orders and curves of each method", 1e7};
 }
 

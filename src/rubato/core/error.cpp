@@ -1,5 +1,7 @@
 #include <rubato/core/error.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
@@ -9,10 +11,10 @@ namespace rubato {
 namespace {
 
 std::string place(const Location& where) {
-  std::string text = where.file;
-  if (where.line > 0) text += (text.empty() ? "line " : ":") + std::to_string(where.line);
-  if (where.line > 0 && where.column > 0) text += ":" + std::to_string(where.column);
-  return text.empty() ? text : text + ": ";
+  if (where.line <= 0) return where.file.empty() ? "" : where.file + ": ";
+  const std::string column = where.column > 0 ? fmt::format(":{}", where.column) : "";
+  if (where.file.empty()) return fmt::format("line {}{}: ", where.line, column);
+  return fmt::format("{}:{}{}: ", where.file, where.line, column);
 }
 
 // Levenshtein distance with transposition of neighbours, so that "balde" is one edit from "blade".

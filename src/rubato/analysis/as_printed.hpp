@@ -1,0 +1,31 @@
+#pragma once
+
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A row of the thesis's Tables 2.2 to 2.4.
+struct PrintedRow {
+  std::string title;       ///< as the thesis calls it
+  std::string method;      ///< the method of the catalogue that it means
+  std::string convention;  ///< how the printed figures arise, where it is not the method as it should be
+  bool in_percent = false;
+  double first_step_error = 0.0, indicator = 0.0;  ///< in the unit of the table
+};
+
+/// Computes Tables 2.2 to 2.4 of the thesis "Calcolo della risposta dinamica non lineare ..." (Politecnico di Torino,
+/// 2023) the way they were computed, faults included: 30,000 steps, relative errors at every sample, and
+///
+///   indicator = sum over j = 0..J of E_j / (J + 1),   E_j = |x_j - x(t_j)| / |x(t_j)|,   E_0 = 0
+///
+/// Explicit Euler: the "first step" is the second, and the last sample was never computed (E_J = 1). Runge-Kutta 3 and
+/// 4: the load of the half step is that at t - h/2 (at t = 0 that at 0). Newmark: the printed beta, which for some rows
+/// is Zienkiewicz's 2 beta; "accelerazione lineare II" with 1/3. These are no methods of the catalogue.
+///
+/// Throws InvalidInput unless the system is one underdamped coordinate from rest under one harmonic load.
+std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system, double step);
+
+}  // namespace rubato::analysis

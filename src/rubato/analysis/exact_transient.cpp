@@ -1,0 +1,156 @@
+#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/transient_recorder.hpp>
+#include <rubato/integrate/exact/exact_flow.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::analysis {
+namespace {
+
+using Kind = model::OutputDescription::Kind;
+
+constexpr int samples_a_period = 64;
+constexpr std::size_t samples_a_chunk = 4096;  // between reports of progress; memory does not grow with the duration
+
+/// Records samples, and transitions where no times are asked for.
+class ExactRecorder final : public integrate::ExactVisitor {
+ public:
+  ExactRecorder(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder,
+                RunContext& context)
+      : system_(system),
+        recorder_(recorder),
+        context_(context),
+        with_transitions_(plan.output == Kind::every_step),
+        with_energy_(plan.energy),
+        product_(system.size()) {
+    start_ = energy_of(system, system.start(), product_);
+    start_.start = start_.kinetic + start_.strain + start_.slider_stored;
+  }
+
+  bool sample(const system::State& state, const integrate::ExactWork& work) override {
+    record(state, work);
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+  bool transition(const system::State& state, const integrate::Transition&, const integrate::ExactWork& work) override {
+    if (with_transitions_ && state.t != last_) record(state, work);
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+  /// Sums of work begin anew with each advance.
+  void keep(const integrate::ExactWork& work) {
+    done_.damper += work.damper;
+    done_.slider += work.slider;
+    done_.load += work.load;
+  }
+  const integrate::ExactWork& last_work() const { return last_work_; }
+
+ private:
+  void record(const system::State& state, const integrate::ExactWork& work) {
+    last_ = state.t;
+    last_work_ = work;
+    if (!with_energy_) return recorder_.record(state, nullptr);
+    Energy energy = energy_of(system_, state, product_);
+    energy.start = start_.start;
+    energy.damper_dissipated = done_.damper + work.damper;
+    energy.slider_dissipated = done_.slider + work.slider;
+    energy.load_work = done_.load + work.load;
+    recorder_.record(state, &energy);
+  }
+
+  const system::LocallyNonlinear& system_;
+  TransientRecorder& recorder_;
+  RunContext& context_;
+  bool with_transitions_, with_energy_;
+  Vector product_;
+  Energy start_;
+  integrate::ExactWork done_, last_work_;
+  double last_ = -1.0;
+};
+
+// 64 a period of the fastest harmonic load; of the fastest mode where there is none.
+double default_interval(const system::LocallyNonlinear& system) {
+  double omega = 0.0;
+  for (const auto& term : system.loads().terms())
+    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law))
+      omega = std::max(omega, harmonic->angular_frequency);
+  if (omega == 0.0) {
+    integrate::TaylorPiece piece(system);
+    const std::vector<integrate::SliderState> stuck(static_cast<std::size_t>(system.slider_count()),
+                                                    integrate::SliderState::stick);
+    piece.start(system.start(), stuck, 0.0);
+    omega = 1.3 / piece.max_length();
+  }
+  return 2.0 * std::numbers::pi / omega / samples_a_period;
+}
+
+}  // namespace
+
+void check_exact_transient(const Location& where, const system::LocallyNonlinear& system) {
+  try {
+    const integrate::ExactFlow flow(system);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(where, fault.message());
+  }
+}
+
+RunReport run_exact_transient(const std::string& name, const TransientPlan& plan,
+                              const system::LocallyNonlinear& system, RunContext& context) {
+  integrate::ExactFlow flow(system);
+  TransientRecorder recorder(name, plan, system, context.sink);
+  ExactRecorder visitor(plan, system, recorder, context);
+  const double interval = plan.output == Kind::interval ? plan.interval : default_interval(system);
+  const double round_off = 1e-12 * plan.duration;
+  system::State state = system.start();
+  RunReport run;
+  long transitions = 0;
+  std::size_t next = 0;
+  std::vector<double> times;
+  context.progress.begin(name, plan.duration, "s of motion");
+  while (state.t < plan.duration) {
+    times.clear();
+    while (times.size() < samples_a_chunk) {
+      if (plan.output == Kind::times) {
+        if (next == plan.times.size()) break;
+        times.push_back(plan.times[next++]);
+      } else {
+        const double t = static_cast<double>(next) * interval;
+        if (t > plan.duration + round_off) break;
+        times.push_back(std::min(t, plan.duration));
+        ++next;
+      }
+    }
+    const bool is_last = times.size() < samples_a_chunk;
+    if (is_last && plan.output == Kind::every_step && (times.empty() || times.back() < plan.duration - round_off))
+      times.push_back(plan.duration);
+    const double end = is_last ? plan.duration : times.back();
+    const integrate::ExactReport report = flow.advance(state, end, times, visitor, plan.energy);
+    visitor.keep(visitor.last_work());
+    transitions += report.transitions;
+    context.progress.advance(state.t);
+    if (report.end == integrate::ExactEnd::stopped && state.t < plan.duration) {
+      run.status = RunStatus::interrupted;
+      run.message = fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration);
+    } else if (report.end == integrate::ExactEnd::not_finite) {
+      run.status = RunStatus::failed;
+      run.message = fmt::format(
+          "at t = {} s a number that is not finite appeared: the response grew beyond all bounds; look "
+          "for a negative damping or stiffness",
+          state.t);
+    } else if (report.end == integrate::ExactEnd::chattering) {
+      run.status = RunStatus::failed;
+      run.message = fmt::format(
+          "at t = {} s the slider \"{}\" changes between stick and slip without time passing; take a "
+          "step method such as \"generalized_alpha\"",
+          state.t, system.sliders()[static_cast<std::size_t>(report.worst)].name);
+    }
+    if (run.status != RunStatus::done || report.end == integrate::ExactEnd::stopped) break;
+  }
+  context.progress.end();
+  run.statistics = {{"transitions", std::to_string(transitions)}, {"rows", std::to_string(recorder.rows())}};
+  return run;
+}
+
+}  // namespace rubato::analysis
