@@ -51,7 +51,7 @@ bool OrderedLdlt::factorise(const SparseMatrix& matrix) {
 }
 
 void OrderedLdlt::forward(Vector& x) const {
-  forward(x, [](Index, double now) { return now; });
+  forward(x, [](Index) {});
 }
 
 void OrderedLdlt::backward(Vector& x) const {

@@ -34,8 +34,9 @@ class OrderedLdlt {
 
   /// x <- L^-1 x, in the permuted order.
   void forward(Vector& x) const;
-  /// The same of a right-hand side that is completed on the way: row j becomes complete(j, x[j]) just before it is
-  /// eliminated. A substitution waits for its own last result; work that does not depend on it fills the gaps.
+  /// The same of a right-hand side that is completed on the way: complete(j) is called right before row j is
+  /// eliminated and may add to x[j] and to later rows. A substitution waits for its own last result; work that does not
+  /// depend on it fills the gaps.
   template <class Complete>
   void forward(Vector& x, Complete&& complete) const;
   /// x <- L^-T D^-1 x, in the permuted order.
@@ -70,8 +71,8 @@ void OrderedLdlt::forward(Vector& x, Complete&& complete) const {
   const int* const row = row_.data();
   const double* const value = value_.data();
   for (Index j = 0; j < n_; ++j) {
-    const double now = complete(j, y[j]);
-    y[j] = now;
+    complete(j);
+    const double now = y[j];
     for (int p = start[j]; p < start[j + 1]; ++p) y[row[p]] -= value[p] * now;
   }
 }
@@ -85,7 +86,8 @@ void OrderedLdlt::backward(Vector& x, Take&& take) const {
   const double* const inverse_diagonal = inverse_diagonal_.data();
   for (Index j = n_ - 1; j >= 0; --j) {
     double now = y[j] * inverse_diagonal[j];
-    for (int p = start[j]; p < start[j + 1]; ++p) now -= value[p] * y[row[p]];
+    // The nearest row, known last, comes last: the others need not wait for it.
+    for (int p = start[j + 1] - 1; p >= start[j]; --p) now -= value[p] * y[row[p]];
     y[j] = now;
     take(j, now);
   }

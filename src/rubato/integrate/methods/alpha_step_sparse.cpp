@@ -3,6 +3,7 @@
 #include <rubato/numerics/ordered_ldlt.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -42,7 +43,8 @@ std::optional<Rayleigh> find_rayleigh(const system::LocallyNonlinear& system) {
 /// For many coordinates. The contact problem is solved between the forward and the backward substitution, with the
 /// coordinates of the sliders eliminated last, so that friction costs no second solve. A substitution is a chain of
 /// operations that wait for each other, so the products with the matrices are made row by row during the forward one
-/// and the state is advanced during the backward one: both hide in its waiting. Rayleigh damping needs no product of
+/// (each entry of the symmetric matrices is read once) and the state is advanced during the backward one: what is read
+/// is still near, and the work hides in the waiting. Rayleigh damping needs no product of
 /// its own, nor does a diagonal mass.
 class SparseAlphaStep final : public AlphaStep {
  public:
@@ -97,18 +99,18 @@ class SparseAlphaStep final : public AlphaStep {
   }
 
   StepReport solve(const system::State& from, const double* load, system::State& to) override {
-    combine(from);
+    right_.setZero();
     add_loads(load);
     add_to_sliders(-p_.alpha_f, from.slider_force, right_.data() + (n_ - k_));
     switch (products_) {
       case 1:
-        eliminate<1>();
+        eliminate<1>(from);
         break;
       case 2:
-        eliminate<2>();
+        eliminate<2>(from);
         break;
       default:
-        eliminate<3>();
+        eliminate<3>(from);
     }
     if (m_ > 0) {
       factor_.last_solution(right_, last_);
@@ -138,67 +140,91 @@ class SparseAlphaStep final : public AlphaStep {
     SparseMatrix pattern = *matrices[0];
     for (const SparseMatrix* matrix : matrices) pattern = SparseMatrix(pattern + *matrix);
     combined_.resize(n_ * products_);
-    const auto entries = static_cast<std::size_t>(pattern.nonZeros());
-    start_.reserve(static_cast<std::size_t>(n_) + 1);
-    column_.reserve(entries);
-    coefficient_.reserve(entries * static_cast<std::size_t>(products_));
+    const auto rows = static_cast<std::size_t>(n_), half = static_cast<std::size_t>(pattern.nonZeros()) / 2;
+    start_.reserve(rows + 1);
+    column_.reserve(half);
+    coefficient_.reserve(half * static_cast<std::size_t>(products_));
+    diagonal_.reserve(rows * static_cast<std::size_t>(products_));
+    new_start_.reserve(rows + 1);
+    new_column_.reserve(rows);
     start_.push_back(0);
+    new_start_.push_back(0);
+    std::vector<bool> is_known(rows, false);
+    const auto meet = [&](Index coordinate) {
+      if (is_known[static_cast<std::size_t>(coordinate)]) return;
+      is_known[static_cast<std::size_t>(coordinate)] = true;
+      new_column_.push_back(place_[static_cast<std::size_t>(coordinate)]);
+    };
     for (const int row : order_) {  // symmetric: its columns are its rows
+      meet(row);                    // also where no matrix has an entry on the diagonal
       for (SparseMatrix::InnerIterator entry(pattern, row); entry; ++entry) {
-        column_.push_back(static_cast<int>(entry.row()));
+        meet(entry.row());
+        if (factor_.permuted(entry.row()) <= factor_.permuted(row)) continue;
+        column_.push_back(place_[static_cast<std::size_t>(entry.row())]);
         for (const SparseMatrix* matrix : matrices) coefficient_.push_back(matrix->coeff(entry.row(), row));
       }
+      for (const SparseMatrix* matrix : matrices) diagonal_.push_back(matrix->coeff(row, row));
       start_.push_back(static_cast<int>(column_.size()));
+      new_start_.push_back(static_cast<int>(new_column_.size()));
     }
   }
 
-  /// What the products multiply, and in `right_` the part of a diagonal mass.
-  void combine(const system::State& from) {
+  /// What the products multiply, in their order; last what a diagonal mass does.
+  std::array<Combination, 3> combinations() const {
     const double h = h_, end = 1.0 - p_.alpha_f;
     Combination stiffness{1.0, end * h, end * h * h * (0.5 - p_.beta)};
-    Combination damping{0.0, 1.0, end * h * (1.0 - p_.gamma)};
+    const Combination damping{0.0, 1.0, end * h * (1.0 - p_.gamma)};
     Combination mass{0.0, 0.0, p_.alpha_m};
-    if (rayleigh_) {
-      stiffness.v += rayleigh_->on_stiffness * damping.v;
-      stiffness.a += rayleigh_->on_stiffness * damping.a;
-      mass.v += rayleigh_->on_mass * damping.v;
-      mass.a += rayleigh_->on_mass * damping.a;
-    }
-    int product = 0;
-    write_combination(stiffness, from, product++);
-    if (!rayleigh_) write_combination(damping, from, product++);
-    if (mass_.size() == 0) {
-      write_combination(mass, from, product);
-      right_.setZero();
-      return;
-    }
+    if (!rayleigh_) return {stiffness, damping, mass};
+    stiffness.v += rayleigh_->on_stiffness * damping.v;
+    stiffness.a += rayleigh_->on_stiffness * damping.a;
+    mass.v += rayleigh_->on_mass * damping.v;
+    mass.a += rayleigh_->on_mass * damping.a;
+    return {stiffness, mass, mass};
+  }
+
+  /// Completes each row of the right-hand side just before it is eliminated. The combinations of the state are made
+  /// when the first row needs them, so that the state is read once and what was read is still near.
+  template <int products>
+  void eliminate(const system::State& from) {
+    const std::array<Combination, 3> combine = combinations();
+    const Combination on_mass = combine[rayleigh_ ? 1 : 2];
+    const double* const q0 = from.q.data();
     const double* const v0 = from.v.data();
     const double* const a0 = from.auxiliary_acceleration.data();
-    for (Index i = 0; i < n_; ++i)
-      right_[place_[static_cast<std::size_t>(i)]] = -mass_[i] * (mass.v * v0[i] + mass.a * a0[i]);
-  }
-
-  void write_combination(const Combination& c, const system::State& from, int product) {
-    Eigen::Map<Vector, 0, Eigen::InnerStride<>> out(combined_.data() + product, n_, Eigen::InnerStride<>(products_));
-    if (products_ == 1)
-      combined_ = c.q * from.q + c.v * from.v + c.a * from.auxiliary_acceleration;
-    else
-      out = c.q * from.q + c.v * from.v + c.a * from.auxiliary_acceleration;
-  }
-
-  /// Completes each row of the right-hand side by the products of the matrices just before it is eliminated.
-  template <int products>
-  void eliminate() {
+    const int* const order = order_.data();
     const int* const start = start_.data();
     const int* const column = column_.data();
+    const int* const new_start = new_start_.data();
+    const int* const new_column = new_column_.data();
     const double* const coefficient = coefficient_.data();
-    const double* const x = combined_.data();
-    factor_.forward(right_, [=](Index j, double now) {
-      double sum = 0.0;
-      for (int p = start[j]; p < start[j + 1]; ++p)
+    const double* const diagonal = diagonal_.data();
+    double* const y = right_.data();
+    const double* const mass = mass_.size() > 0 ? mass_.data() : nullptr;
+    double* const x = combined_.data();
+    factor_.forward(right_, [=](Index j) {
+      for (int p = new_start[j]; p < new_start[j + 1]; ++p) {
+        const Index place = new_column[p], i = order[place];
         for (int k = 0; k < products; ++k)
-          sum += coefficient[static_cast<Index>(products) * p + k] * x[static_cast<Index>(products) * column[p] + k];
-      return now - sum;
+          x[products * place + k] = combine[k].q * q0[i] + combine[k].v * v0[i] + combine[k].a * a0[i];
+      }
+      const Index i = order[j];
+      double own[products], sum = mass ? mass[i] * (on_mass.v * v0[i] + on_mass.a * a0[i]) : 0.0;
+      for (int k = 0; k < products; ++k) {
+        own[k] = x[products * j + k];
+        sum += diagonal[products * j + k] * own[k];
+      }
+      for (int p = start[j]; p < start[j + 1]; ++p) {
+        const Index other = column[p];
+        double push = 0.0;
+        for (int k = 0; k < products; ++k) {
+          const double c = coefficient[static_cast<Index>(products) * p + k];
+          sum += c * x[products * other + k];
+          push += c * own[k];
+        }
+        y[other] -= push;
+      }
+      y[j] -= sum;
     });
   }
 
@@ -259,8 +285,9 @@ class SparseAlphaStep final : public AlphaStep {
   std::vector<int> order_, place_;     // elimination place -> coordinate, and back
   Vector mass_;                        // its diagonal; empty if it is not diagonal
   int products_ = 0;
-  std::vector<int> start_, column_;  // rows in the order of elimination, columns as coordinates
-  std::vector<double> coefficient_;
+  std::vector<int> start_, column_;  // rows in the order of elimination, columns likewise, those beyond the diagonal
+  std::vector<int> new_start_, new_column_;  // those that no earlier row has
+  std::vector<double> diagonal_, coefficient_;
   Vector combined_, right_, last_, push_, trial_;
   ContactProblem contact_;
 };
