@@ -37,7 +37,12 @@ class Browser:
         capabilities = {"goog:chromeOptions": {"binary": shutil.which("chromium"), "args": arguments},
                         "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
         self.session = ""
-        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        try:
+            session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
+        except Exception:
+            self.driver.terminate()
+            raise
+        self.session = "/session/" + session["sessionId"]
         self.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
 
     def call(self, verb, path, body=None):
@@ -78,6 +83,7 @@ class Browser:
         finally:
             self.driver.terminate()
             self.driver.wait()
+            self.driver.stdout.close()
 
 
 class Report(unittest.TestCase):
@@ -155,6 +161,18 @@ class Report(unittest.TestCase):
         text = self.browser.script("return document.querySelector('main').textContent")
         self.assertIn("bl\"ade</script><b>\u03a9", text)
         self.assertIn("</script><script>document.title = 'taken'</script>", text)
+        self.browser.script("[...document.querySelectorAll('figure')].at(-1).scrollIntoView({behavior: 'instant'})")
+        self.assertEqual(self.browser.wait("return [...document.querySelectorAll('figure')].at(-1)"
+                                           ".querySelector('.legendtext')?.textContent"), "bl\"ade</script><b>\u03a9")
+
+    def test_each_slider_has_its_loop_over_the_relative_displacement(self):
+        for name in ("contact1", "contact2", "pad"):
+            figure = self.browser.script(
+                "const figure = [...document.querySelectorAll('figure')].find((candidate) =>"
+                "  candidate.textContent.includes(`Hysteresis loop of ${arguments[0]}.`));"
+                "figure.scrollIntoView({behavior: 'instant'}); return figure.id", name)
+            self.assertEqual(self.browser.wait(f"return document.querySelector('#{figure} .xtitle')?.textContent"),
+                             "Relative displacement [m]")
 
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))
