@@ -176,7 +176,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     piece_.evaluate(length, now_);
     without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
     std::swap(state, now_);
-    if (!piece_.is_finite() || !state.v.allFinite()) {
+    if (!std::isfinite(state.v.sum()) || !std::isfinite(state.q.sum())) {
       report.end = ExactEnd::not_finite;
       return report;
     }

@@ -1,12 +1,13 @@
 #include <rubato/integrate/exact/first_crossing.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rubato::integrate {
 namespace {
 
-constexpr int samples = 8;
+constexpr std::size_t samples = 8;
 
 // Newton inside a bracket f(low) >= 0 > f(high), bisection where it leaves it.
 double refine(std::span<const double> c, double low, double high) {
@@ -58,14 +59,17 @@ double first_crossing(std::span<const double> c, double length) {
   }
   if (c[0] > falling) return -1.0;
   c = c.first(terms);
-  double a = 0.0, slope_a = terms > 1 ? c[1] : 0.0;
-  for (int i = 1; i <= samples; ++i) {
-    const double b = length * static_cast<double>(i) / samples;
-    double value_b = 0.0, slope_b = 0.0;
-    for (std::size_t k = c.size(); k-- > 0;) {
-      slope_b = slope_b * b + value_b;
-      value_b = value_b * b + c[k];
+  // All samples side by side: the recurrences of one would wait for each other.
+  std::array<double, samples> at, value{}, slope{};
+  for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
+  for (std::size_t k = terms; k-- > 0;)
+    for (std::size_t i = 0; i < samples; ++i) {
+      slope[i] = slope[i] * at[i] + value[i];
+      value[i] = value[i] * at[i] + c[k];
     }
+  double a = 0.0, slope_a = terms > 1 ? c[1] : 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double b = at[i], value_b = value[i], slope_b = slope[i];
     double high = -1.0;
     if (value_b < 0.0) {
       high = b;

@@ -155,8 +155,9 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
         load_(1, i) = (model::value(law, table_end, model::Side::left) - load_(0, i)) / (table_end - state.t);
     }
   }
-  forcing_.noalias() = load_pattern_ * load_.topRows(degree).transpose();
-  forcing_.col(0).noalias() -= joins_ * offset_;
+  // Few terms: products of their size, without the blocking that large ones gain from.
+  forcing_.noalias() = load_pattern_.lazyProduct(load_.topRows(degree).transpose());
+  forcing_.col(0).noalias() -= joins_.lazyProduct(offset_);
   with_size(n_, [&](auto size) { fill_coefficients<decltype(size)::value>(); });
   for (Index i = 0; i < m_; ++i) {
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
@@ -222,7 +223,5 @@ void TaylorPiece::add_work(double from, double to, double& damper, double& load)
       load += weight * polynomial({load_.col(j).data(), degree + 1}, s) * pattern_.col(j).dot(work_v_);
   }
 }
-
-bool TaylorPiece::is_finite() const { return v_.allFinite() && q_.allFinite(); }
 
 }  // namespace rubato::integrate

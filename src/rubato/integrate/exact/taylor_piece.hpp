@@ -48,9 +48,6 @@ class TaylorPiece {
   /// exact to the degree of what is integrated.
   void add_work(double from, double to, double& damper, double& load) const;
 
-  bool is_finite() const;
-  long created_operators() const { return static_cast<long>(cache_.size()); }
-
  private:
   struct Operators {
     Matrix stiffness;  // M^-1 (K + stuck)
