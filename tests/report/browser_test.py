@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+import urllib.error
 import urllib.request
 
 ELEMENT_KEY = "element-6066-11e4-a52e-4f735466cecf"  # of the WebDriver standard
@@ -43,14 +44,18 @@ class Browser:
             self.driver.terminate()
             raise
         self.session = "/session/" + session["sessionId"]
+        self.call("POST", "/timeouts", {"script": 180000})  # a loaded machine draws slowly
         self.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
 
     def call(self, verb, path, body=None):
         request = urllib.request.Request(self.base + self.session + path, method=verb,
                                          data=None if body is None else json.dumps(body).encode(),
                                          headers={"Content-Type": "application/json"})
-        with urllib.request.urlopen(request, timeout=60) as answer:
-            return json.load(answer)["value"]
+        try:
+            with urllib.request.urlopen(request, timeout=200) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as fault:
+            raise RuntimeError(f"{verb} {path}: {fault.read().decode(errors='replace')[:500]}") from fault
 
     def command(self, name, parameters):
         """A command of the DevTools protocol."""

@@ -191,6 +191,10 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     const auto k = static_cast<std::size_t>(slider);
     state.slider_force[slider] = std::copysign(system_.sliders()[k].limit, state.slider_force[slider]);
     decided_ = states_;
+    // The likeliest outcome first: it has changed, and the others have not.
+    states_[k] = states_[k] != SliderState::stick   ? SliderState::stick
+                 : state.slider_force[slider] > 0.0 ? SliderState::slip_positive
+                                                    : SliderState::slip_negative;
     decide_states(state, table_end());
     for (std::size_t i = 0; i < states_.size(); ++i) {
       if (states_[i] == decided_[i]) continue;

@@ -1,11 +1,12 @@
 #include <rubato/integrate/exact/first_crossing.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rubato::integrate {
 namespace {
 
-constexpr int samples = 12;
+constexpr int samples = 8;
 
 // Newton inside a bracket f(low) >= 0 > f(high), bisection where it leaves it.
 double refine(std::span<const double> c, double low, double high) {
@@ -46,10 +47,25 @@ double polynomial_slope(std::span<const double> c, double s) {
 }
 
 double first_crossing(std::span<const double> c, double length) {
-  double a = 0.0, slope_a = polynomial_slope(c, 0.0);
+  // What the falling terms can take at most; and where terms are below round-off.
+  double falling = 0.0, size = 0.0, power = 1.0;
+  std::size_t terms = 1;
+  for (std::size_t k = 0; k < c.size(); ++k, power *= length) {
+    const double term = c[k] * power;
+    if (k > 0 && term < 0.0) falling -= term;
+    size = std::max(size, std::abs(term));
+    if (std::abs(term) > 1e-18 * size) terms = k + 1;
+  }
+  if (c[0] > falling) return -1.0;
+  c = c.first(terms);
+  double a = 0.0, slope_a = terms > 1 ? c[1] : 0.0;
   for (int i = 1; i <= samples; ++i) {
     const double b = length * static_cast<double>(i) / samples;
-    const double value_b = polynomial(c, b), slope_b = polynomial_slope(c, b);
+    double value_b = 0.0, slope_b = 0.0;
+    for (std::size_t k = c.size(); k-- > 0;) {
+      slope_b = slope_b * b + value_b;
+      value_b = value_b * b + c[k];
+    }
     double high = -1.0;
     if (value_b < 0.0) {
       high = b;
