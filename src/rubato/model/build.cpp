@@ -277,7 +277,7 @@ class Builder {
         const double start = formula_law.formula(0.0);
         if (!std::isfinite(start))
           throw InvalidInput(fmt::format("\"{}\" is {} at t = 0; give a formula that is finite at all times",
-                                         formula->formula.expression, start));
+                                         formula->formula.expression, std::isnan(start) ? std::abs(start) : start));
         return formula_law;
       } catch (const InvalidInput& fault) {
         throw InvalidInput(formula->formula.where, part + ": " + fault.message());
