@@ -145,6 +145,46 @@ class Schema(unittest.TestCase):
                         count += 1
                 self.assertGreater(count, 20)
 
+    def test_and_the_reader_agree_on_keys_that_exclude_each_other(self):
+        damper = tomllib.loads((root / "examples" / "underplatform-damper" / "study.toml").read_text())
+        damper["analysis"] = damper["analysis"][:1]  # the exact flow takes no formulas of t
+        harmonic = {"on": "blade1", "amplitude": 1.0}
+        analysis = {"name": "run", "type": "transient", "duration": 1.0}
+        motion = {"amplitude": 1.0, "frequency": 2.0, "of": "displacement"}
+        cases = [
+            ("force", [harmonic | {"frequency": 2.0}], True),
+            ("force", [harmonic], False),
+            ("force", [harmonic | {"frequency": 2.0, "angular_frequency": 2.0}], False),
+            ("force", [harmonic | {"frequency": 2.0, "beyond": "zero"}], False),
+            ("force", [{"on": "blade1", "expression": "sin(t)"}], True),
+            ("force", [{"on": "blade1", "expression": "sin(t)", "phase": 1.0}], False),
+            ("damping", {"modal_ratio": [0.01, 0.02], "modes": 2}, True),
+            ("damping", {"rayleigh": {"stiffness": 0.01}}, True),
+            ("damping", {"rayleigh": {}}, False),
+            ("damping", {"rayleigh": {"mass": 0.01}, "modes": 2}, False),
+            ("base_motion", motion, True),
+            ("base_motion", motion | {"expression": "t"}, False),
+            ("analysis", [analysis | {"step": 0.01}], True),
+            ("analysis", [analysis], False),
+            ("analysis", [analysis | {"method": "exact"}], True),
+            ("analysis", [analysis | {"method": "exact", "step": 0.01}], False),
+            ("analysis", [analysis | {"step": 0.01, "method": {"name": "hht", "alpha": -0.1}}], True),
+            ("analysis", [analysis | {"step": {"tolerance": 1e-3}}], False),
+            ("analysis", [analysis | {"step": 0.01, "output": {"every": 2, "interval": 0.1}}], False),
+            ("analysis", [analysis | {"step": 0.01, "name": "results"}], False),
+            ("analysis", [analysis | {"step": 0.01, "name": "a/b"}], False),
+            ("analysis", [analysis | {"step": 0.01, "observe": ["disk1", "disk1"]}], False),
+            ("analysis", [], False),
+        ]
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder) / "study.toml"
+            for key, value, expected in cases:
+                with self.subTest(f"{key} = {value}"):
+                    study = damper | {key: value}
+                    target.write_text(dump(study))
+                    self.assertEqual(is_valid(study), expected, "the schema")
+                    self.assertEqual(check(target)[0], 0 if expected else 2, "the reader")
+
     def test_has_the_keys_that_the_reader_asks_for(self):
         calls = (r'(?:\.|->|\b)(?:text|quantity|name|between|node|has|tables|required|matrix|optional_\w+)'
                  r'(?:<\w+>)?\("(\w+)"')
