@@ -19,30 +19,32 @@ PICTURES = {
     "single-mass-slider": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger"},
     "underplatform-damper": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger"},
     "method-study": {"error": "against step", "radius": "Spectral radius", "elongation": "Period elongation",
-                     "runge-kutta": "Stability regions", "newmark": "Stability of Newmark"},
+                     "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
+                     "responses": "response beside"},
     "matrices": {"motion": "Motion of the coordinates"},
 }
 WIDTH = 900
 
-SAVE = """
-const figure = figures.find((one) => one.node.querySelector('figcaption').textContent.includes(arguments[0]));
-if (!figure) return null;
-const plot = figure.plot;
-const height = plot.clientHeight;
-const done = figure.is_drawn ? Promise.resolve() : figure.render();
-return done.then(() => Plotly.toImage(plot, {format: 'png', width: arguments[1], height, scale: 1.5}));
+# Numbers of the figures whose caption has these words.
+FIND = """
+return [...document.querySelectorAll('figure')].map((figure, i) => [figure.querySelector('figcaption').textContent, i + 1])
+  .filter(([caption]) => caption.includes(arguments[0])).map(([, number]) => number)
 """
 
-# Figures 2.4 to 2.17 of the thesis on one sheet: each method's response beside the exact one.
+DRAW = "document.getElementById('figure-' + arguments[0]).scrollIntoView({behavior: 'instant'})"
+
+SAVE = """
+const plot = document.querySelector(`#figure-${arguments[0]} .plot`);
+return Plotly.toImage(plot, {format: 'png', width: arguments[1], height: plot.clientHeight, scale: 1});
+"""
+
+# Several figures on one sheet, in two columns.
 SHEET = """
-const chosen = figures.filter((one) => one.node.querySelector('figcaption').textContent.includes('response beside'));
-if (chosen.length === 0) return null;
-const wait = Promise.all(chosen.map((one) => one.is_drawn ? null : one.render()));
-return wait.then(() => Promise.all(chosen.map((one) =>
-  Plotly.toImage(one.plot, {format: 'png', width: 450, height: 300, scale: 1.5})))).then(async (images) => {
+return Promise.all(arguments[0].map((number) => Plotly.toImage(document.querySelector(`#figure-${number} .plot`),
+  {format: 'png', width: 600, height: 360, scale: 1}))).then(async (images) => {
   const sheet = document.createElement('canvas');
-  sheet.width = 2 * 675;
-  sheet.height = Math.ceil(images.length / 2) * 450;
+  sheet.width = 2 * 600;
+  sheet.height = Math.ceil(images.length / 2) * 360;
   const pen = sheet.getContext('2d');
   pen.fillStyle = 'white';
   pen.fillRect(0, 0, sheet.width, sheet.height);
@@ -50,20 +52,34 @@ return wait.then(() => Promise.all(chosen.map((one) =>
     const image = new Image();
     image.src = source;
     await image.decode();
-    pen.drawImage(image, (i % 2) * 675, Math.floor(i / 2) * 450);
+    pen.drawImage(image, (i % 2) * 600, Math.floor(i / 2) * 360);
   }
   return sheet.toDataURL('image/png');
 });
 """
 
 
-def save(browser, name, script, *arguments):
-    data = browser.script(script, *arguments)
-    if not data:
-        print(f"{name}: no such figure", file=sys.stderr)
-        return False
-    (root / "docs" / "pictures" / name).write_bytes(base64.b64decode(data.split(",")[1]))
+def find(browser, words):
+    """Numbers of the figures whose caption has these words, drawn."""
+    numbers = browser.script(FIND, words)
+    for number in numbers:
+        browser.script(DRAW, number)
+        browser.wait(f"return document.querySelector('#figure-{number} .main-svg') !== null")
+    return numbers
+
+
+def write(name, data):
+    (root / "docs" / "pictures" / name).write_bytes(base64.b64decode(data.split(",")[-1]))
     print(f"docs/pictures/{name}")
+
+
+def save(browser, example, picture, words):
+    numbers = find(browser, words)
+    if not numbers:
+        print(f"{example}: no figure says \"{words}\"", file=sys.stderr)
+        return False
+    write(f"{example}-{picture}.png",
+          browser.script(SHEET, numbers) if picture == "responses" else browser.script(SAVE, numbers[0], WIDTH))
     return True
 
 
@@ -80,17 +96,11 @@ def main():
             browser.call("POST", "/url", {"url": (results / "report.html").as_uri()})
             browser.wait("return document.querySelectorAll('figure').length > 0")
             for picture, words in PICTURES[name].items():
-                complete &= save(browser, f"{name}-{picture}.png", SAVE, words, WIDTH)
-            if name == "method-study":
-                complete &= save(browser, f"{name}-responses.png", SHEET)
-            if name == "underplatform-damper":  # the README shows the report as it opens
+                complete &= save(browser, name, picture, words)
+            if name == "underplatform-damper":  # for the README: the report as it is read
                 browser.call("POST", "/window/rect", {"width": 1366, "height": 900})
-                browser.script("window.scrollTo(0, 0)")
-                browser.script("document.querySelector('#figure-1').scrollIntoView({behavior: 'instant'})")
-                browser.wait("return document.querySelector('#figure-1 .main-svg') !== null")
-                shot = browser.call("GET", "/screenshot")
-                (root / "docs" / "pictures" / f"{name}.png").write_bytes(base64.b64decode(shot))
-                print(f"docs/pictures/{name}.png")
+                browser.script(DRAW, find(browser, PICTURES[name]["motion"])[0])
+                write(f"{name}.png", browser.call("GET", "/screenshot"))
     finally:
         browser.close()
         shutil.rmtree(folder, ignore_errors=True)

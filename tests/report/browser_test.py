@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+import urllib.error
 import urllib.request
 
 ELEMENT_KEY = "element-6066-11e4-a52e-4f735466cecf"  # of the WebDriver standard
@@ -37,15 +38,24 @@ class Browser:
         capabilities = {"goog:chromeOptions": {"binary": shutil.which("chromium"), "args": arguments},
                         "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
         self.session = ""
-        self.session = "/session/" + self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        try:
+            session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
+        except Exception:
+            self.driver.terminate()
+            raise
+        self.session = "/session/" + session["sessionId"]
+        self.call("POST", "/timeouts", {"script": 180000})  # a loaded machine draws slowly
         self.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
 
     def call(self, verb, path, body=None):
         request = urllib.request.Request(self.base + self.session + path, method=verb,
                                          data=None if body is None else json.dumps(body).encode(),
                                          headers={"Content-Type": "application/json"})
-        with urllib.request.urlopen(request, timeout=60) as answer:
-            return json.load(answer)["value"]
+        try:
+            with urllib.request.urlopen(request, timeout=200) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as fault:
+            raise RuntimeError(f"{verb} {path}: {fault.read().decode(errors='replace')[:500]}") from fault
 
     def command(self, name, parameters):
         """A command of the DevTools protocol."""
@@ -78,6 +88,7 @@ class Browser:
         finally:
             self.driver.terminate()
             self.driver.wait()
+            self.driver.stdout.close()
 
 
 class Report(unittest.TestCase):
@@ -155,6 +166,18 @@ class Report(unittest.TestCase):
         text = self.browser.script("return document.querySelector('main').textContent")
         self.assertIn("bl\"ade</script><b>\u03a9", text)
         self.assertIn("</script><script>document.title = 'taken'</script>", text)
+        self.browser.script("[...document.querySelectorAll('figure')].at(-1).scrollIntoView({behavior: 'instant'})")
+        self.assertEqual(self.browser.wait("return [...document.querySelectorAll('figure')].at(-1)"
+                                           ".querySelector('.legendtext')?.textContent"), "bl\"ade</script><b>\u03a9")
+
+    def test_each_slider_has_its_loop_over_the_relative_displacement(self):
+        for name in ("contact1", "contact2", "pad"):
+            figure = self.browser.script(
+                "const figure = [...document.querySelectorAll('figure')].find((candidate) =>"
+                "  candidate.textContent.includes(`Hysteresis loop of ${arguments[0]}.`));"
+                "figure.scrollIntoView({behavior: 'instant'}); return figure.id", name)
+            self.assertEqual(self.browser.wait(f"return document.querySelector('#{figure} .xtitle')?.textContent"),
+                             "Relative displacement [m]")
 
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))

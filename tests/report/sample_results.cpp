@@ -1,39 +1,15 @@
+#include <rubato/io/write_netcdf.hpp>
+
 #include "report/sample_results.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <functional>
-#include <stdexcept>
-
-#include <netcdf.h>
 
 namespace rubato::test {
 namespace {
 
 using Rows = std::vector<std::vector<double>>;
-
-void check(int status) {
-  if (status != NC_NOERR) throw std::runtime_error(nc_strerror(status));
-}
-
-int group_of(int parent, const std::string& name) {
-  int group = -1;
-  if (nc_inq_grp_ncid(parent, name.c_str(), &group) != NC_NOERR) check(nc_def_grp(parent, name.c_str(), &group));
-  return group;
-}
-
-int labelled_dimension(int group, const results::Block& block) {
-  int dimension = -1;
-  if (nc_inq_dimid(group, block.dimension.c_str(), &dimension) == NC_NOERR) return dimension;
-  check(nc_def_dim(group, block.dimension.c_str(), block.labels.size(), &dimension));
-  int variable = -1;
-  check(nc_def_var(group, block.dimension.c_str(), NC_STRING, 1, &dimension, &variable));
-  std::vector<const char*> labels;
-  for (const std::string& label : block.labels) labels.push_back(label.c_str());
-  check(nc_put_var_string(group, variable, labels.data()));
-  return dimension;
-}
 
 results::Block column(const std::string& name, const std::string& unit, const std::string& dimension = "",
                       const std::vector<std::string>& labels = {}) {
@@ -63,7 +39,7 @@ struct SmallModel {
 
 void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energies) {
   const std::size_t n = model.mass.size(), s = model.ends.size();
-  std::vector<double> q(n), v(n), a(n), fc(s), u(s);
+  std::vector<double> q(n), v(n), a(n), fc(s), u(s), pushed(n), resisted(n);
   double damped = 0.0, rubbed = 0.0, work = 0.0;
   for (int step = 0; step <= steps; ++step) {
     const double t = step * h;
@@ -79,13 +55,14 @@ void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energ
     for (std::size_t i = 0; i < n; ++i) {
       double damping = model.damping_per_mass * model.mass[i] * v[i];
       double force = model.amplitude[i] * std::cos(model.angular_frequency * t);
-      work += force * v[i] * h;
+      const double load = force;
       for (std::size_t j = 0; j < n; ++j) {
         force -= model.stiffness[i][j] * q[j];
         damping += model.damping_per_stiffness * model.stiffness[i][j] * v[j];
         strain += 0.5 * q[i] * model.stiffness[i][j] * q[j];
       }
-      damped += damping * v[i] * h;
+      pushed[i] = load;
+      resisted[i] = damping;
       kinetic += 0.5 * model.mass[i] * v[i] * v[i];
       for (std::size_t k = 0; k < s; ++k) {
         if (model.ends[k].first == static_cast<int>(i)) force -= fc[k];
@@ -97,34 +74,43 @@ void march(const SmallModel& model, double h, int steps, Rows& rows, Rows& energ
     std::vector<double> row{t};
     for (const auto* part : {&q, &v, &a, &fc}) row.insert(row.end(), part->begin(), part->end());
     for (std::size_t k = 0; k < s; ++k) row.push_back(u[k] - fc[k] / model.slider_stiffness);
-    row.insert(row.end(), u.begin(), u.end());
     rows.push_back(row);
     energies.push_back(
         {t, kinetic, strain, stored, damped, rubbed, work, work - kinetic - strain - stored - damped - rubbed});
-    for (std::size_t i = 0; i < n; ++i) v[i] += h * a[i];
+    for (std::size_t i = 0; i < n; ++i) {
+      const double mean_velocity = v[i] + 0.5 * h * a[i];
+      work += pushed[i] * mean_velocity * h;
+      damped += resisted[i] * mean_velocity * h;
+      v[i] += h * a[i];
+    }
     for (std::size_t i = 0; i < n; ++i) q[i] += h * v[i];
   }
 }
 
-void add_transient(ResultsFileWriter& file, const std::string& name, const SmallModel& model, double h, int steps,
+std::string repeated(double value, std::size_t times) {
+  std::string out;
+  for (std::size_t i = 0; i < times; ++i) out += (i > 0 ? ", " : "") + std::to_string(value);
+  return out;
+}
+
+void add_transient(results::Sink& sink, const std::string& name, const SmallModel& model, double h, int steps,
                    const std::string& status, const std::string& message) {
   results::TableLayout layout{name, "", "time", {column("time", "s")}, {}};
   layout.attributes = {{"type", "transient"},
                        {"method", "generalized_alpha (rho_inf = 0.9)"},
                        {"step", std::to_string(h) + " s"},
-                       {"status", status},
-                       {"message", message},
-                       {"steps", std::to_string(steps)}};
+                       {"slider_stiffness", repeated(model.slider_stiffness, model.sliders.size())},
+                       {"slider_limit", repeated(model.limit, model.sliders.size())}};
   layout.blocks.push_back(column("position", "m", "coordinate", model.coordinates));
   layout.blocks.push_back(column("velocity", "m/s", "coordinate", model.coordinates));
   layout.blocks.push_back(column("acceleration", "m/s2", "coordinate", model.coordinates));
   layout.blocks.push_back(column("force", "N", "slider", model.sliders));
   layout.blocks.push_back(column("slip", "m", "slider", model.sliders));
-  layout.blocks.push_back(column("displacement", "m", "slider", model.sliders));
   Rows rows, energies;
   march(model, h, steps, rows, energies);
-  file.add(layout, rows);
-  file.add(energy_layout(name), energies);
+  add_table(sink, layout, rows);
+  add_table(sink, energy_layout(name), energies);
+  sink.conclude(name, status, message, {{"steps", std::to_string(steps)}});
 }
 
 /// One Newmark step of m = c = k = 1 under cos(2 t) from rest, and its exact response.
@@ -147,7 +133,7 @@ double exact_response(double t) {
   return A * std::cos(2 * t) + B * std::sin(2 * t) + std::exp(-0.5 * t) * (C * std::cos(w * t) + D * std::sin(w * t));
 }
 
-void add_method_study(ResultsFileWriter& file) {
+void add_method_study(results::Sink& sink) {
   struct Named {
     const char* name;
     double beta, gamma;
@@ -166,8 +152,7 @@ void add_method_study(ResultsFileWriter& file) {
     return error;
   };
 
-  results::TableLayout main{
-      study, "", "method", {column("method", "1")}, {{"type", "method_study"}, {"status", "done"}}};
+  results::TableLayout main{study, "", "method", {column("method", "1")}, {{"type", "method_study"}}};
   main.blocks[0].categories = names;
   for (const char* quantity : {"first_step_error", "maximum_error", "order"})
     main.blocks.push_back(column(quantity, "1"));
@@ -178,7 +163,7 @@ void add_method_study(ResultsFileWriter& file) {
     const double coarse = error_at(methods[k], 0.02), fine = error_at(methods[k], 0.01);
     errors.push_back({static_cast<double>(k), std::abs(first), fine, std::log2(coarse / fine)});
   }
-  file.add(main, errors);
+  add_table(sink, main, errors);
 
   results::TableLayout ladder{study, "ladder", "step", {column("step", "s")}, {}};
   ladder.blocks.push_back(column("maximum_error", "1", "method", names));
@@ -187,7 +172,7 @@ void add_method_study(ResultsFileWriter& file) {
     rungs.push_back({h});
     for (const Named& method : methods) rungs.back().push_back(error_at(method, h));
   }
-  file.add(ladder, rungs);
+  add_table(sink, ladder, rungs);
 
   auto with_exact = names;
   with_exact.emplace_back("exact");
@@ -200,7 +185,7 @@ void add_method_study(ResultsFileWriter& file) {
     for (std::size_t j = 0; j < samples.size(); ++j) samples[j].push_back(rows[j][1]);
   }
   for (auto& row : samples) row.push_back(exact_response(row[0]));
-  file.add(response, samples);
+  add_table(sink, response, samples);
 
   results::TableLayout stability{study, "stability", "omega_h", {column("omega_h", "1")}, {}};
   stability.blocks.push_back(column("spectral_radius", "1", "method", names));
@@ -220,63 +205,24 @@ void add_method_study(ResultsFileWriter& file) {
     radius.insert(radius.end(), elongation.begin(), elongation.end());
     radii.push_back(radius);
   }
-  file.add(stability, radii);
+  add_table(sink, stability, radii);
+  sink.conclude(study, "done", "", {});
 }
 
 }  // namespace
 
-ResultsFileWriter::ResultsFileWriter(const std::filesystem::path& file) {
-  check(nc_create(file.c_str(), NC_NETCDF4 | NC_CLOBBER, &file_));
+void add_table(results::Sink& sink, const results::TableLayout& layout, const Rows& rows) {
+  const auto writer = sink.open(layout);
+  for (const auto& row : rows) writer->append(row);
 }
 
-ResultsFileWriter::~ResultsFileWriter() { nc_close(file_); }
-
-void ResultsFileWriter::set_attribute(const std::string& name, const std::string& value) {
-  check(nc_put_att_text(file_, NC_GLOBAL, name.c_str(), value.size(), value.data()));
-}
-
-void ResultsFileWriter::add(const results::TableLayout& layout, const Rows& rows) {
-  int group = group_of(file_, layout.analysis);
-  if (!layout.table.empty()) group = group_of(group, layout.table);
-  for (const auto& [name, value] : layout.attributes) {
-    check(nc_put_att_text(group, NC_GLOBAL, name.c_str(), value.size(), value.data()));
-  }
-  int row_dimension = -1;
-  check(nc_def_dim(group, layout.row_dimension.c_str(), NC_UNLIMITED, &row_dimension));
-  std::size_t column = 0;
-  for (const results::Block& block : layout.blocks) {
-    int dimensions[] = {row_dimension, -1}, variable = -1;
-    if (!block.dimension.empty()) dimensions[1] = labelled_dimension(group, block);
-    check(nc_def_var(group, block.variable.c_str(), NC_DOUBLE, block.dimension.empty() ? 1 : 2, dimensions, &variable));
-    const std::size_t chunk[] = {1024, block.width()};
-    check(nc_def_var_chunking(group, variable, NC_CHUNKED, chunk));
-    check(nc_put_att_text(group, variable, "units", block.unit.size(), block.unit.data()));
-    check(nc_put_att_text(group, variable, "long_name", block.description.size(), block.description.data()));
-    if (!block.categories.empty()) {
-      std::string meanings;
-      for (const std::string& word : block.categories) meanings += (meanings.empty() ? "" : " ") + word;
-      check(nc_put_att_text(group, variable, "flag_meanings", meanings.size(), meanings.data()));
-    }
-    const std::size_t start[] = {0, 0}, count[] = {rows.size(), block.width()};
-    std::vector<double> values;
-    for (const auto& row : rows) {
-      values.insert(values.end(), row.begin() + static_cast<std::ptrdiff_t>(column),
-                    row.begin() + static_cast<std::ptrdiff_t>(column + block.width()));
-    }
-    check(nc_put_vara_double(group, variable, start, count, values.data()));
-    column += block.width();
-  }
-}
-
-void write_sample_results(const std::filesystem::path& file_name) {
-  ResultsFileWriter file(file_name);
-  file.set_attribute("title", "Two blade sectors and an under-platform damper");
-  file.set_attribute("version", "0.1.0");
-  file.set_attribute("history", "2026-11-21T03:30:00Z rubato run examples/underplatform-damper/study.toml");
-  file.set_attribute(
-      "study",
+void write_sample_results(const std::filesystem::path& file) {
+  const io::Provenance provenance{
+      "Two blade sectors and an under-platform damper", "examples/underplatform-damper/study.toml",
       "title = \"Two blade sectors and an under-platform damper\"\n\n[parameters]\nN0 = 10.0  # preload [N]\n"
-      "# a comment that tries to end the page: </script><script>document.title = 'taken'</script>\n");
+      "# a comment that tries to end the page: </script><script>document.title = 'taken'</script>\n",
+      "rubato run examples/underplatform-damper/study.toml", "2026-11-21T03:30:00Z"};
+  io::NetcdfSink sink(file, provenance);
   const SmallModel damper{
       {"disk1", "blade1", "disk2", "blade2", "damper"},
       {"contact1", "contact2"},
@@ -289,24 +235,26 @@ void write_sample_results(const std::filesystem::path& file_name) {
       5.0,
       {0, 20, 0, -20, 0},
       10.0};
-  add_transient(file, "response", damper, 0.005, 12000, "done", "");
+  add_transient(sink, "response", damper, 0.005, 12000, "done", "");
   const SmallModel mass{{"mass"}, {"pad"}, {1}, {{1}}, 1.0, 0.0, {{0, -1}}, 1.0, 0.15, {1}, 2.0};
   add_transient(
-      file, "single mass", mass, 0.02, 2500, "failed",
+      sink, "single mass", mass, 0.02, 2500, "failed",
       "at t = 50.02 s the contact problem did not converge (residual 3.1e-4 after 50 iterations); try a smaller "
       "step or allow_unstable = false");
-  add_method_study(file);
+  add_method_study(sink);
 
   const std::string hostile = "bl\"ade</script><b>\xCE\xA9";
   results::TableLayout unknown{"frf", "", "angular_frequency", {column("angular_frequency", "rad/s")}, {}};
-  unknown.attributes = {{"type", "frequency_response"}, {"status", "done"}, {"note", hostile}};
+  unknown.attributes = {{"type", "frequency_response"}, {"note", hostile}};
   unknown.blocks.push_back(column("amplitude", "m", "coordinate", {hostile, "disk"}));
   Rows rows;
   for (double omega = 7.0; omega <= 8.5; omega += 0.01) {
     const double other = omega > 8.0 && omega < 8.05 ? NAN : 0.1;
     rows.push_back({omega, 1.0 / std::hypot(60.0 - omega * omega, 0.3 * omega), other});
   }
-  file.add(unknown, rows);
+  add_table(sink, unknown, rows);
+  sink.conclude("frf", "done", "", {});
+  sink.close();
 }
 
 }  // namespace rubato::test

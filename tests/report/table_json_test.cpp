@@ -76,6 +76,10 @@ TEST(TableJson, HasASizeThatDoesNotGrowWithTheResults) {
   EXPECT_THAT(table_json(Ramp(4, 3000)), HasSubstr(R"("label_count":3000)"));
 }
 
+TEST(AttributesJson, CutsLongValues) {
+  EXPECT_EQ(attributes_json({{"a", "1, 2, 3, 4"}, {"b", "1"}}, 4), R"({"a":"1, 2...","b":"1"})");
+}
+
 TEST(TableJson, OfNoRowsIsStillATable) {
   EXPECT_THAT(table_json(Ramp(0, 2)), HasSubstr(R"("rows":0)"));
   EXPECT_THAT(table_json(Ramp(0, 2)), HasSubstr(R"("overview":[[[]],[[],[]]])"));

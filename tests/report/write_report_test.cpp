@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/io/write_netcdf.hpp>
 #include <rubato/report/write_report.hpp>
 
 #include "report/sample_results.hpp"
@@ -35,15 +36,11 @@ class WriteReport : public testing::Test {
 
 TEST_F(WriteReport, ShowsTitleStudyAndTablesOfTheResults) {
   {
-    test::ResultsFileWriter file(folder_ / "results.nc");
-    file.set_attribute("title", "One <mass>");
-    file.set_attribute("study", "[[coordinate]]\nname = \"</script>\"\n");
-    file.add({"run",
-              "",
-              "time",
-              {{"time", "s", "", "", {}}, {"position", "m", "", "coordinate", {"mass"}}},
-              {{"status", "done"}}},
-             {{0.0, 1.0}, {0.1, std::nan("")}, {0.2, 0.25}});
+    io::NetcdfSink sink(folder_ / "results.nc", {"One <mass>", "", "[[coordinate]]\nname = \"</script>\"\n", "", ""});
+    test::add_table(sink,
+                    {"run", "", "time", {{"time", "s", "", "", {}}, {"position", "m", "", "coordinate", {"mass"}}}, {}},
+                    {{0.0, 1.0}, {0.1, std::nan("")}, {0.2, 0.25}});
+    sink.conclude("run", "failed", "at t = 0.2 s", {});
   }
   write_report(folder_ / "results.nc", folder_ / "report.html");
   const std::string page = text_of(folder_ / "report.html");
@@ -51,11 +48,28 @@ TEST_F(WriteReport, ShowsTitleStudyAndTablesOfTheResults) {
   EXPECT_THAT(page, HasSubstr(R"(name = \"\u003c/script\u003e\")"));
   EXPECT_THAT(page, HasSubstr(R"("overview":[[[0,0.1,0.2]],[[1,null,0.25]]])"));
   EXPECT_THAT(page, HasSubstr(R"("labels":["mass"])"));
+  EXPECT_THAT(page, HasSubstr(R"("status":"failed","message":"at t = 0.2 s")"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "report.html.partial"));
 }
 
+TEST_F(WriteReport, KeepsTheNamesOfASubtableApartFromThoseOfItsParent) {
+  {
+    io::NetcdfSink sink(folder_ / "results.nc", {});
+    results::TableLayout main{"study", "", "method", {{"method", "1", "", "", {}, {"heun", "rk4"}}}, {}};
+    test::add_table(sink, main, {{0.0}, {1.0}});
+    results::TableLayout ladder{"study", "ladder", "step", {{"step", "s", "", "", {}}}, {}};
+    ladder.blocks.push_back({"error", "1", "", "method", {"heun", "rk4", "exact"}});
+    test::add_table(sink, ladder, {{0.5, 1e-2, 1e-4, 0.0}});
+  }
+  write_report(folder_ / "results.nc", folder_ / "report.html");
+  const std::string page = text_of(folder_ / "report.html");
+  EXPECT_THAT(page, HasSubstr(R"("categories":["heun","rk4"])"));
+  EXPECT_THAT(page, HasSubstr(R"("labels":["heun","rk4","exact"])"));
+  EXPECT_THAT(page, HasSubstr(R"("overview":[[[0.5]],[[0.01],[0.0001],[0]]])"));
+}
+
 TEST_F(WriteReport, ReplacesAnOlderPage) {
-  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
   std::ofstream(folder_ / "report.html") << "older";
   write_report(folder_ / "results.nc", folder_ / "report.html");
   EXPECT_THAT(text_of(folder_ / "report.html"), HasSubstr(R"("analyses":[)"));
@@ -73,7 +87,7 @@ TEST_F(WriteReport, NamesResultsThatCannotBeRead) {
 }
 
 TEST_F(WriteReport, SaysWhyThePageCannotBeWritten) {
-  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
   try {
     write_report(folder_ / "results.nc", folder_ / "missing" / "report.html");
     FAIL() << "no error";
@@ -84,7 +98,7 @@ TEST_F(WriteReport, SaysWhyThePageCannotBeWritten) {
 
 TEST_F(WriteReport, KeepsTheOlderPageOnAFullDisk) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  { test::ResultsFileWriter file(folder_ / "results.nc"); }
+  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
   std::ofstream(folder_ / "report.html") << "older";
   std::filesystem::create_symlink("/dev/full", folder_ / "report.html.partial");
   EXPECT_THROW(write_report(folder_ / "results.nc", folder_ / "report.html"), OutputError);

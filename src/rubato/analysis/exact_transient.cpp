@@ -81,7 +81,7 @@ double default_interval(const system::LocallyNonlinear& system) {
     const std::vector<integrate::SliderState> stuck(static_cast<std::size_t>(system.slider_count()),
                                                     integrate::SliderState::stick);
     piece.start(system.start(), stuck, 0.0);
-    omega = 1.3 / piece.max_length();
+    omega = integrate::TaylorPiece::reach / piece.max_length();
   }
   return 2.0 * std::numbers::pi / omega / samples_a_period;
 }

@@ -84,7 +84,7 @@ std::optional<std::string> TomlReader::optional_text(const std::string& key) {
 }
 
 std::optional<std::string> TomlReader::optional_word(const std::string& key, const std::vector<std::string>& words) {
-  const auto word = optional_text(key);
+  auto word = optional_text(key);
   if (word && std::find(words.begin(), words.end(), *word) == words.end())
     throw InvalidInput(where(key),
                        fmt::format("{}: {} cannot be \"{}\"{}", what_, key, *word, suggestion(*word, words)));

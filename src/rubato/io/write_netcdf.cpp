@@ -120,8 +120,14 @@ class NetcdfWriter final : public results::RowWriter {
   };
 
   int labelled_dimension(const results::Block& block) {
-    int dimension = 0;
-    if (nc_inq_dimid(group_, block.dimension.c_str(), &dimension) == NC_NOERR) return dimension;
+    // nc_inq_dimid would also find the dimension of a group above, whose names are others.
+    int count = 0, own[NC_MAX_DIMS] = {}, dimension = 0;
+    file_->check(nc_inq_dimids(group_, &count, own, 0));
+    for (int i = 0; i < count; ++i) {
+      char name[NC_MAX_NAME + 1] = {};
+      file_->check(nc_inq_dimname(group_, own[i], name));
+      if (block.dimension == name) return own[i];
+    }
     file_->check(nc_def_dim(group_, block.dimension.c_str(), block.labels.size(), &dimension));
     int variable = 0;
     file_->check(nc_def_var(group_, block.dimension.c_str(), NC_STRING, 1, &dimension, &variable));

@@ -51,22 +51,11 @@ bool OrderedLdlt::factorise(const SparseMatrix& matrix) {
 }
 
 void OrderedLdlt::forward(Vector& x) const {
-  double* const y = x.data();
-  for (Index j = 0; j < n_; ++j) {
-    const double now = y[j];
-    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
-      y[row_[static_cast<std::size_t>(p)]] -= value_[static_cast<std::size_t>(p)] * now;
-  }
+  forward(x, [](Index) {});
 }
 
 void OrderedLdlt::backward(Vector& x) const {
-  double* const y = x.data();
-  for (Index j = n_ - 1; j >= 0; --j) {
-    double now = y[j] * inverse_diagonal_[static_cast<std::size_t>(j)];
-    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
-      now -= value_[static_cast<std::size_t>(p)] * y[row_[static_cast<std::size_t>(p)]];
-    y[j] = now;
-  }
+  backward(x, [](Index, double) {});
 }
 
 void OrderedLdlt::last_solution(const Vector& x, Vector& out) const {

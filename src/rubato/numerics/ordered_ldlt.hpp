@@ -34,8 +34,16 @@ class OrderedLdlt {
 
   /// x <- L^-1 x, in the permuted order.
   void forward(Vector& x) const;
+  /// The same of a right-hand side that is completed on the way: complete(j) is called right before row j is
+  /// eliminated and may add to x[j] and to later rows. A substitution waits for its own last result; work that does not
+  /// depend on it fills the gaps.
+  template <class Complete>
+  void forward(Vector& x, Complete&& complete) const;
   /// x <- L^-T D^-1 x, in the permuted order.
   void backward(Vector& x) const;
+  /// The same, with take(j, x[j]) for each row as soon as it is known, from the last to the first.
+  template <class Take>
+  void backward(Vector& x, Take&& take) const;
   /// The solution at the last k rows from a forward-substituted right-hand side: out = (L22^-T D2^-1) x2 [k].
   void last_solution(const Vector& x, Vector& out) const;
   /// x2 <- x2 - L22^-1 r for a force r [k] on the last rows (overwritten): what the forward substitution of b - P r
@@ -55,5 +63,34 @@ class OrderedLdlt {
   std::vector<double> value_, inverse_diagonal_;
   mutable Vector scratch_;
 };
+
+template <class Complete>
+void OrderedLdlt::forward(Vector& x, Complete&& complete) const {
+  double* const y = x.data();
+  const int* const start = start_.data();
+  const int* const row = row_.data();
+  const double* const value = value_.data();
+  for (Index j = 0; j < n_; ++j) {
+    complete(j);
+    const double now = y[j];
+    for (int p = start[j]; p < start[j + 1]; ++p) y[row[p]] -= value[p] * now;
+  }
+}
+
+template <class Take>
+void OrderedLdlt::backward(Vector& x, Take&& take) const {
+  double* const y = x.data();
+  const int* const start = start_.data();
+  const int* const row = row_.data();
+  const double* const value = value_.data();
+  const double* const inverse_diagonal = inverse_diagonal_.data();
+  for (Index j = n_ - 1; j >= 0; --j) {
+    double now = y[j] * inverse_diagonal[j];
+    // The nearest row, known last, comes last: the others need not wait for it.
+    for (int p = start[j + 1] - 1; p >= start[j]; --p) now -= value[p] * y[row[p]];
+    y[j] = now;
+    take(j, now);
+  }
+}
 
 }  // namespace rubato::numerics

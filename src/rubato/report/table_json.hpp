@@ -8,7 +8,7 @@ namespace rubato::report {
 
 /// How much of a table goes into a report.
 struct Extent {
-  std::size_t labels = 24;         ///< the first so many along a dimension
+  std::size_t labels = 32;         ///< the first so many along a dimension
   std::size_t whole_up_to = 6000;  ///< tables of at most so many rows are shown whole
   std::size_t buckets = 2000;      ///< longer ones: extremes in so many buckets,
   std::size_t window_rows = 4000;  ///< and the last so many rows as they are
@@ -28,7 +28,7 @@ struct Extent {
 /// through, in pieces, and its window once more.
 std::string table_json(const TableSource& table, const Extent& extent = {});
 
-/// {"name": "value", ...}
-std::string attributes_json(const Attributes& attributes);
+/// {"name": "value", ...}; a longer value is cut after so many bytes and ends in "...".
+std::string attributes_json(const Attributes& attributes, std::size_t longest = 4096);
 
 }  // namespace rubato::report

@@ -16,6 +16,9 @@
 namespace rubato::report {
 namespace {
 
+// The text of the study is shown whole up to here: beyond it the page would outgrow its figures.
+constexpr std::size_t longest_study = 1u << 20;
+
 std::string analysis_json(const AnalysisTables& analysis) {
   std::string tables;
   for (const auto& table : analysis.tables) tables += (tables.empty() ? "" : ",") + table_json(*table);
@@ -59,7 +62,7 @@ void write_report(const std::filesystem::path& results_nc, const std::filesystem
   }
   const std::string data = fmt::format("{{\"results_file\":{},\"attributes\":{},\"theory\":{},\"analyses\":[\n{}]}}",
                                        json_string(results_nc.filename().string()),
-                                       attributes_json(results.attributes()), theory_json(), analyses);
+                                       attributes_json(results.attributes(), longest_study), theory_json(), analyses);
   replace_file(html, html_page(title, data));
 }
 

@@ -176,7 +176,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     piece_.evaluate(length, now_);
     without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
     std::swap(state, now_);
-    if (!piece_.is_finite() || !state.v.allFinite()) {
+    if (!std::isfinite(state.v.sum()) || !std::isfinite(state.q.sum())) {
       report.end = ExactEnd::not_finite;
       return report;
     }
@@ -191,6 +191,10 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     const auto k = static_cast<std::size_t>(slider);
     state.slider_force[slider] = std::copysign(system_.sliders()[k].limit, state.slider_force[slider]);
     decided_ = states_;
+    // The likeliest outcome first: it has changed, and the others have not.
+    states_[k] = states_[k] != SliderState::stick   ? SliderState::stick
+                 : state.slider_force[slider] > 0.0 ? SliderState::slip_positive
+                                                    : SliderState::slip_negative;
     decide_states(state, table_end());
     for (std::size_t i = 0; i < states_.size(); ++i) {
       if (states_[i] == decided_[i]) continue;

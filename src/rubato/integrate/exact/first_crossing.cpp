@@ -1,11 +1,13 @@
 #include <rubato/integrate/exact/first_crossing.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rubato::integrate {
 namespace {
 
-constexpr int samples = 12;
+constexpr std::size_t samples = 8;
 
 // Newton inside a bracket f(low) >= 0 > f(high), bisection where it leaves it.
 double refine(std::span<const double> c, double low, double high) {
@@ -46,10 +48,28 @@ double polynomial_slope(std::span<const double> c, double s) {
 }
 
 double first_crossing(std::span<const double> c, double length) {
-  double a = 0.0, slope_a = polynomial_slope(c, 0.0);
-  for (int i = 1; i <= samples; ++i) {
-    const double b = length * static_cast<double>(i) / samples;
-    const double value_b = polynomial(c, b), slope_b = polynomial_slope(c, b);
+  // What the falling terms can take at most; and where terms are below round-off.
+  double falling = 0.0, size = 0.0, power = 1.0;
+  std::size_t terms = 1;
+  for (std::size_t k = 0; k < c.size(); ++k, power *= length) {
+    const double term = c[k] * power;
+    if (k > 0 && term < 0.0) falling -= term;
+    size = std::max(size, std::abs(term));
+    if (std::abs(term) > 1e-18 * size) terms = k + 1;
+  }
+  if (c[0] > falling) return -1.0;
+  c = c.first(terms);
+  // All samples side by side: the recurrences of one would wait for each other.
+  std::array<double, samples> at, value{}, slope{};
+  for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
+  for (std::size_t k = terms; k-- > 0;)
+    for (std::size_t i = 0; i < samples; ++i) {
+      slope[i] = slope[i] * at[i] + value[i];
+      value[i] = value[i] * at[i] + c[k];
+    }
+  double a = 0.0, slope_a = terms > 1 ? c[1] : 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double b = at[i], value_b = value[i], slope_b = slope[i];
     double high = -1.0;
     if (value_b < 0.0) {
       high = b;

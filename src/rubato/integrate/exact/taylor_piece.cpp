@@ -8,12 +8,35 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace rubato::integrate {
 namespace {
 
-// (rho length)^21/21! = 5e-18 at 1.3: beyond round-off for every mode, with rho a bound of all |eigenvalues|.
-constexpr double reach = 1.3;
+// Calls a member template with the size where it is known at compile time: three times as fast for five coordinates.
+template <class Call>
+void with_size(Index n, Call&& call) {
+  switch (n) {
+    case 1:
+      return call(std::integral_constant<int, 1>());
+    case 2:
+      return call(std::integral_constant<int, 2>());
+    case 3:
+      return call(std::integral_constant<int, 3>());
+    case 4:
+      return call(std::integral_constant<int, 4>());
+    case 5:
+      return call(std::integral_constant<int, 5>());
+    case 6:
+      return call(std::integral_constant<int, 6>());
+    case 7:
+      return call(std::integral_constant<int, 7>());
+    case 8:
+      return call(std::integral_constant<int, 8>());
+    default:
+      return call(std::integral_constant<int, Eigen::Dynamic>());
+  }
+}
 
 /// Nodes and weights of Gauss-Legendre quadrature on [0, 1], by Newton on the Legendre polynomial.
 struct Gauss {
@@ -70,6 +93,7 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
   }
   load_pattern_ = mass.solve(pattern_);
   joins_ = mass.solve(joins);
+  forcing_.resize(n_, degree);
   q_.resize(n_, degree + 1);
   v_.resize(n_, degree + 1);
   u_.resize(degree + 1, m_);
@@ -131,15 +155,10 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
         load_(1, i) = (model::value(law, table_end, model::Side::left) - load_(0, i)) / (table_end - state.t);
     }
   }
-  for (int k = 0; k < degree; ++k) {
-    const double factor = 1.0 / (k + 1);
-    work_product_.noalias() = load_pattern_ * load_.row(k).transpose();
-    work_product_.noalias() -= damping_ * v_.col(k);
-    work_product_.noalias() -= operators_->stiffness * q_.col(k);
-    if (k == 0) work_product_.noalias() -= joins_ * offset_;
-    v_.col(k + 1) = factor * work_product_;
-    q_.col(k + 1) = factor * v_.col(k);
-  }
+  // Few terms: products of their size, without the blocking that large ones gain from.
+  forcing_.noalias() = load_pattern_.lazyProduct(load_.topRows(degree).transpose());
+  forcing_.col(0).noalias() -= joins_.lazyProduct(offset_);
+  with_size(n_, [&](auto size) { fill_coefficients<decltype(size)::value>(); });
   for (Index i = 0; i < m_; ++i) {
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
     u_.col(i).setZero();
@@ -148,13 +167,38 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
   }
 }
 
-void TaylorPiece::evaluate(double s, Vector& q, Vector& v) const {
-  q = q_.col(degree);
-  v = v_.col(degree);
-  for (int k = degree - 1; k >= 0; --k) {
-    q = s * q + q_.col(k);
-    v = s * v + v_.col(k);
+template <int N>
+void TaylorPiece::fill_coefficients() {
+  using Column = Eigen::Matrix<double, N, 1>;
+  const Eigen::Map<const Eigen::Matrix<double, N, N>> stiffness(operators_->stiffness.data(), n_, n_),
+      damping(damping_.data(), n_, n_);
+  for (int k = 0; k < degree; ++k) {
+    const Eigen::Map<const Column> q(q_.col(k).data(), n_), v(v_.col(k).data(), n_),
+        forcing(forcing_.col(k).data(), n_);
+    Eigen::Map<Column> next_q(q_.col(k + 1).data(), n_), next_v(v_.col(k + 1).data(), n_);
+    const double factor = 1.0 / (k + 1);
+    next_v = forcing;
+    next_v.noalias() -= damping * v;
+    next_v.noalias() -= stiffness * q;
+    next_v *= factor;
+    next_q = factor * v;
   }
+}
+
+template <int N>
+void TaylorPiece::horner(double s, double* q_out, double* v_out) const {
+  using Column = Eigen::Matrix<double, N, 1>;
+  Eigen::Map<Column> q(q_out, n_), v(v_out, n_);
+  q = Eigen::Map<const Column>(q_.col(degree).data(), n_);
+  v = Eigen::Map<const Column>(v_.col(degree).data(), n_);
+  for (int k = degree - 1; k >= 0; --k) {
+    q = s * q + Eigen::Map<const Column>(q_.col(k).data(), n_);
+    v = s * v + Eigen::Map<const Column>(v_.col(k).data(), n_);
+  }
+}
+
+void TaylorPiece::evaluate(double s, Vector& q, Vector& v) const {
+  with_size(n_, [&](auto size) { horner<decltype(size)::value>(s, q.data(), v.data()); });
 }
 
 void TaylorPiece::evaluate(double s, system::State& state) const {
@@ -179,7 +223,5 @@ void TaylorPiece::add_work(double from, double to, double& damper, double& load)
       load += weight * polynomial({load_.col(j).data(), degree + 1}, s) * pattern_.col(j).dot(work_v_);
   }
 }
-
-bool TaylorPiece::is_finite() const { return v_.allFinite() && q_.allFinite(); }
 
 }  // namespace rubato::integrate

@@ -3,34 +3,77 @@
 #include <rubato/numerics/ordered_ldlt.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
 
-/// For many coordinates. Everything a step touches lies in the order of elimination, the coordinates of the sliders
-/// last: the contact problem is solved between the forward and the backward substitution, so friction costs no second
-/// solve.
+/// A combination of the state at the start of a step: q q0 + v v0 + a A0.
+struct Combination {
+  double q = 0.0, v = 0.0, a = 0.0;
+};
+
+/// C = a M + b K to round-off, entry by entry.
+struct Rayleigh {
+  double on_mass = 0.0, on_stiffness = 0.0;
+};
+
+std::optional<Rayleigh> find_rayleigh(const system::LocallyNonlinear& system) {
+  const SparseMatrix &m = system.mass(), &c = system.damping(), &k = system.stiffness();
+  const double mm = m.squaredNorm(), kk = k.squaredNorm(), mk = m.cwiseProduct(k).sum();
+  const double mc = m.cwiseProduct(c).sum(), kc = k.cwiseProduct(c).sum();
+  const double determinant = mm * kk - mk * mk;
+  if (!(determinant > 1e-8 * mm * kk)) return std::nullopt;  // K = 0, or as good as proportional to M
+  const Rayleigh found{(kk * mc - mk * kc) / determinant, (mm * kc - mk * mc) / determinant};
+  const SparseMatrix sum = found.on_mass * m + found.on_stiffness * k;
+  const SparseMatrix rest = c - sum;
+  constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
+  for (Index column = 0; column < rest.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator entry(rest, column); entry; ++entry) {
+      const double size = std::abs(found.on_mass * m.coeff(entry.row(), column)) +
+                          std::abs(found.on_stiffness * k.coeff(entry.row(), column));
+      if (!(std::abs(entry.value()) <= round_off * size)) return std::nullopt;
+    }
+  return found;
+}
+
+/// For many coordinates. The contact problem is solved between the forward and the backward substitution, with the
+/// coordinates of the sliders eliminated last, so that friction costs no second solve. A substitution is a chain of
+/// operations that wait for each other, so the products with the matrices are made row by row during the forward one
+/// (each entry of the symmetric matrices is read once) and the state is advanced during the backward one: what is read
+/// is still near, and the work hides in the waiting. Rayleigh damping needs no product of
+/// its own, nor does a diagonal mass.
 class SparseAlphaStep final : public AlphaStep {
  public:
   SparseAlphaStep(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
-      : p_(parameters), system_(system), n_(system.size()), m_(system.slider_count()) {
+      : p_(parameters),
+        system_(system),
+        n_(system.size()),
+        m_(system.slider_count()),
+        rayleigh_(find_rayleigh(system)) {
     std::vector<Index> last;
     for (const auto& slider : system.sliders())
       for (const Index end : {slider.first, slider.second})
         if (end != ground) last.push_back(end);
     std::sort(last.begin(), last.end());
     last.erase(std::unique(last.begin(), last.end()), last.end());
-    SparseMatrix pattern = system.mass() + system.damping() + system.stiffness();
-    factor_.analyse(pattern, last);
+    factor_.analyse(SparseMatrix(system.mass() + system.damping() + system.stiffness()), last);
     k_ = factor_.last_count();
     const Index offset = n_ - k_;
     for (const auto& slider : system.sliders()) {
       first_.push_back(slider.first == ground ? ground : factor_.permuted(slider.first) - offset);
       second_.push_back(slider.second == ground ? ground : factor_.permuted(slider.second) - offset);
     }
-    order_last_ = std::vector<Index>(static_cast<std::size_t>(k_));
-    for (Index i = 0; i < k_; ++i) order_last_[static_cast<std::size_t>(i)] = factor_.original(offset + i);
+    order_.resize(static_cast<std::size_t>(n_));
+    place_.resize(static_cast<std::size_t>(n_));
+    for (Index i = 0; i < n_; ++i) {
+      order_[static_cast<std::size_t>(i)] = static_cast<int>(factor_.original(i));
+      place_[static_cast<std::size_t>(i)] = static_cast<int>(factor_.permuted(i));
+    }
+    if (system.has_diagonal_mass()) mass_ = system.mass().diagonal();
     gather_products();
     right_.resize(n_);
     last_.resize(k_);
@@ -56,34 +99,24 @@ class SparseAlphaStep final : public AlphaStep {
   }
 
   StepReport solve(const system::State& from, const double* load, system::State& to) override {
-    const double h = h_, end = 1.0 - p_.alpha_f, bh2 = p_.beta * h * h;
-    const double* const q0 = from.q.data();
-    const double* const v0 = from.v.data();
-    const double* const a0 = from.auxiliary_acceleration.data();
-    double* const qs = to.q.data();
-    double* const vs = to.v.data();
-    // The combinations that the products need, in one pass; `to.auxiliary` serves as their memory until A1 is known.
-    const double q_from_a = h * h * (0.5 - p_.beta), v_from_a = h * (1.0 - p_.gamma);
-    for (Index i = 0; i < n_; ++i) {
-      qs[i] = q0[i] + h * v0[i] + q_from_a * a0[i];
-      vs[i] = v0[i] + v_from_a * a0[i];
-      combined_[static_cast<std::size_t>(i)] = {end * qs[i] + p_.alpha_f * q0[i], end * vs[i] + p_.alpha_f * v0[i],
-                                                p_.alpha_m * a0[i]};
-    }
-    apply_products();
+    right_.setZero();
     add_loads(load);
-    for (Index i = 0; i < m_ && p_.alpha_f != 0.0; ++i) {
-      const double pull = p_.alpha_f * from.slider_force[i];
-      if (first_[static_cast<std::size_t>(i)] != ground) right_[n_ - k_ + first_[static_cast<std::size_t>(i)]] -= pull;
-      if (second_[static_cast<std::size_t>(i)] != ground)
-        right_[n_ - k_ + second_[static_cast<std::size_t>(i)]] += pull;
+    add_to_sliders(-p_.alpha_f, from.slider_force, right_.data() + (n_ - k_));
+    switch (products_) {
+      case 1:
+        eliminate<1>(from);
+        break;
+      case 2:
+        eliminate<2>(from);
+        break;
+      default:
+        eliminate<3>(from);
     }
-    factor_.forward(right_);
     if (m_ > 0) {
       factor_.last_solution(right_, last_);
       for (Index i = 0; i < m_; ++i) {
-        const double travel = travel_of(first_[static_cast<std::size_t>(i)], qs, q0, bh2) -
-                              travel_of(second_[static_cast<std::size_t>(i)], qs, q0, bh2);
+        const double travel = free_travel(first_[static_cast<std::size_t>(i)], from) -
+                              free_travel(second_[static_cast<std::size_t>(i)], from);
         trial_[i] = from.slider_force[i] + system_.sliders()[static_cast<std::size_t>(i)].stiffness * travel;
       }
       if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data())) {
@@ -91,65 +124,132 @@ class SparseAlphaStep final : public AlphaStep {
         return {StepOutcome::not_finite, -1};
       }
       push_.setZero();
-      for (Index i = 0; i < m_; ++i) {
-        const double push = end * to.slider_force[i];
-        if (first_[static_cast<std::size_t>(i)] != ground) push_[first_[static_cast<std::size_t>(i)]] += push;
-        if (second_[static_cast<std::size_t>(i)] != ground) push_[second_[static_cast<std::size_t>(i)]] -= push;
-      }
+      add_to_sliders(1.0 - p_.alpha_f, to.slider_force, push_.data());
       factor_.subtract_from_last(push_, right_);
     }
-    factor_.backward(right_);
-    const double v_from_a1 = h * p_.gamma;
-    double* const a1 = to.auxiliary_acceleration.data();
-    double sum = 0.0;
-    for (Index i = 0; i < n_; ++i) {
-      const double now = right_[place_[static_cast<std::size_t>(i)]];
-      a1[i] = now;
-      qs[i] += bh2 * now;
-      vs[i] += v_from_a1 * now;
-      sum += now;
+    return advance(from, to);
+  }
+
+ private:
+  /// The matrices of the products: stiffness first, then damping unless Rayleigh, then mass unless diagonal.
+  void gather_products() {
+    std::vector<const SparseMatrix*> matrices{&system_.stiffness()};
+    if (!rayleigh_) matrices.push_back(&system_.damping());
+    if (mass_.size() == 0) matrices.push_back(&system_.mass());
+    products_ = static_cast<int>(matrices.size());
+    SparseMatrix pattern = *matrices[0];
+    for (const SparseMatrix* matrix : matrices) pattern = SparseMatrix(pattern + *matrix);
+    combined_.resize(n_ * products_);
+    const auto rows = static_cast<std::size_t>(n_), half = static_cast<std::size_t>(pattern.nonZeros()) / 2;
+    start_.reserve(rows + 1);
+    column_.reserve(half);
+    coefficient_.reserve(half * static_cast<std::size_t>(products_));
+    diagonal_.reserve(rows * static_cast<std::size_t>(products_));
+    new_start_.reserve(rows + 1);
+    new_column_.reserve(rows);
+    start_.push_back(0);
+    new_start_.push_back(0);
+    std::vector<bool> is_known(rows, false);
+    const auto meet = [&](Index coordinate) {
+      if (is_known[static_cast<std::size_t>(coordinate)]) return;
+      is_known[static_cast<std::size_t>(coordinate)] = true;
+      new_column_.push_back(place_[static_cast<std::size_t>(coordinate)]);
+    };
+    for (const int row : order_) {  // symmetric: its columns are its rows
+      meet(row);                    // also where no matrix has an entry on the diagonal
+      for (SparseMatrix::InnerIterator entry(pattern, row); entry; ++entry) {
+        meet(entry.row());
+        if (factor_.permuted(entry.row()) <= factor_.permuted(row)) continue;
+        column_.push_back(place_[static_cast<std::size_t>(entry.row())]);
+        for (const SparseMatrix* matrix : matrices) coefficient_.push_back(matrix->coeff(entry.row(), row));
+      }
+      for (const SparseMatrix* matrix : matrices) diagonal_.push_back(matrix->coeff(row, row));
+      start_.push_back(static_cast<int>(column_.size()));
+      new_start_.push_back(static_cast<int>(new_column_.size()));
     }
+  }
+
+  /// What the products multiply, in their order; last what a diagonal mass does.
+  std::array<Combination, 3> combinations() const {
+    const double h = h_, end = 1.0 - p_.alpha_f;
+    Combination stiffness{1.0, end * h, end * h * h * (0.5 - p_.beta)};
+    const Combination damping{0.0, 1.0, end * h * (1.0 - p_.gamma)};
+    Combination mass{0.0, 0.0, p_.alpha_m};
+    if (!rayleigh_) return {stiffness, damping, mass};
+    stiffness.v += rayleigh_->on_stiffness * damping.v;
+    stiffness.a += rayleigh_->on_stiffness * damping.a;
+    mass.v += rayleigh_->on_mass * damping.v;
+    mass.a += rayleigh_->on_mass * damping.a;
+    return {stiffness, mass, mass};
+  }
+
+  /// Completes each row of the right-hand side just before it is eliminated. The combinations of the state are made
+  /// when the first row needs them, so that the state is read once and what was read is still near.
+  template <int products>
+  void eliminate(const system::State& from) {
+    const std::array<Combination, 3> combine = combinations();
+    const Combination on_mass = combine[rayleigh_ ? 1 : 2];
+    const double* const q0 = from.q.data();
+    const double* const v0 = from.v.data();
+    const double* const a0 = from.auxiliary_acceleration.data();
+    const int* const order = order_.data();
+    const int* const start = start_.data();
+    const int* const column = column_.data();
+    const int* const new_start = new_start_.data();
+    const int* const new_column = new_column_.data();
+    const double* const coefficient = coefficient_.data();
+    const double* const diagonal = diagonal_.data();
+    double* const y = right_.data();
+    const double* const mass = mass_.size() > 0 ? mass_.data() : nullptr;
+    double* const x = combined_.data();
+    factor_.forward(right_, [=](Index j) {
+      for (int p = new_start[j]; p < new_start[j + 1]; ++p) {
+        const Index place = new_column[p], i = order[place];
+        for (int k = 0; k < products; ++k)
+          x[products * place + k] = combine[k].q * q0[i] + combine[k].v * v0[i] + combine[k].a * a0[i];
+      }
+      const Index i = order[j];
+      double own[products], sum = mass ? mass[i] * (on_mass.v * v0[i] + on_mass.a * a0[i]) : 0.0;
+      for (int k = 0; k < products; ++k) {
+        own[k] = x[products * j + k];
+        sum += diagonal[products * j + k] * own[k];
+      }
+      for (int p = start[j]; p < start[j + 1]; ++p) {
+        const Index other = column[p];
+        double push = 0.0;
+        for (int k = 0; k < products; ++k) {
+          const double c = coefficient[static_cast<Index>(products) * p + k];
+          sum += c * x[products * other + k];
+          push += c * own[k];
+        }
+        y[other] -= push;
+      }
+      y[j] -= sum;
+    });
+  }
+
+  StepReport advance(const system::State& from, system::State& to) {
+    const double h = h_, q_from_a0 = h * h * (0.5 - p_.beta), q_from_a1 = h * h * p_.beta;
+    const double v_from_a0 = h * (1.0 - p_.gamma), v_from_a1 = h * p_.gamma;
+    const double* const q0 = from.q.data();
+    const double* const v0 = from.v.data();
+    const double* const a0 = from.auxiliary_acceleration.data();
+    double* const q1 = to.q.data();
+    double* const v1 = to.v.data();
+    double* const a1 = to.auxiliary_acceleration.data();
+    const int* const order = order_.data();
+    double sum = 0.0;
+    factor_.backward(right_, [=, &sum](Index j, double now) {
+      const int i = order[j];
+      q1[i] = q0[i] + (h * v0[i] + q_from_a0 * a0[i] + q_from_a1 * now);
+      v1[i] = v0[i] + (v_from_a0 * a0[i] + v_from_a1 * now);
+      a1[i] = now;
+      sum += now;
+    });
     if (!std::isfinite(sum))
       for (Index i = 0; i < n_; ++i)
         if (!std::isfinite(a1[i])) return {StepOutcome::not_finite, i};
     return {};
-  }
-
- private:
-  struct Combined {
-    double q, v, a;
-  };
-  struct Coefficients {
-    double stiffness, damping, mass;
-  };
-
-  // The products K qc + C vc + M ac in one pass over the common pattern, by rows of the elimination order.
-  void gather_products() {
-    SparseMatrix pattern = system_.mass() + system_.damping() + system_.stiffness();
-    combined_.resize(static_cast<std::size_t>(n_));
-    place_.resize(static_cast<std::size_t>(n_));
-    for (Index i = 0; i < n_; ++i) place_[static_cast<std::size_t>(i)] = static_cast<int>(factor_.permuted(i));
-    start_.assign(1, 0);
-    for (Index row = 0; row < n_; ++row) {  // symmetric: its columns are its rows
-      for (SparseMatrix::InnerIterator entry(pattern, row); entry; ++entry) {
-        column_.push_back(static_cast<int>(entry.row()));
-        coefficients_.push_back({system_.stiffness().coeff(entry.row(), row), system_.damping().coeff(entry.row(), row),
-                                 system_.mass().coeff(entry.row(), row)});
-      }
-      start_.push_back(static_cast<int>(column_.size()));
-    }
-  }
-
-  void apply_products() {
-    for (Index i = 0; i < n_; ++i) {
-      double sum = 0.0;
-      for (int p = start_[static_cast<std::size_t>(i)]; p < start_[static_cast<std::size_t>(i) + 1]; ++p) {
-        const Coefficients& c = coefficients_[static_cast<std::size_t>(p)];
-        const Combined& x = combined_[static_cast<std::size_t>(column_[static_cast<std::size_t>(p)])];
-        sum += c.stiffness * x.q + c.damping * x.v + c.mass * x.a;
-      }
-      right_[place_[static_cast<std::size_t>(i)]] = -sum;
-    }
   }
 
   void add_loads(const double* load) {
@@ -159,23 +259,36 @@ class SparseAlphaStep final : public AlphaStep {
         right_[place_[static_cast<std::size_t>(terms[i].rows[k])]] += load[i] * terms[i].weights[k];
   }
 
-  double travel_of(Index place, const double* qs, const double* q0, double bh2) const {
+  /// out += factor * B fc on the last k places.
+  void add_to_sliders(double factor, const Vector& force, double* out) const {
+    for (Index i = 0; i < m_; ++i) {
+      const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
+      if (first != ground) out[first] += factor * force[i];
+      if (second != ground) out[second] -= factor * force[i];
+    }
+  }
+
+  /// Displacement over the step of one of the last k places without the sliders' new forces.
+  double free_travel(Index place, const system::State& from) const {
     if (place == ground) return 0.0;
-    const Index i = order_last_[static_cast<std::size_t>(place)];
-    return qs[i] - q0[i] + bh2 * last_[place];
+    const Index i = order_[static_cast<std::size_t>(n_ - k_ + place)];
+    return h_ * from.v[i] + h_ * h_ * ((0.5 - p_.beta) * from.auxiliary_acceleration[i] + p_.beta * last_[place]);
   }
 
   GeneralizedAlpha p_;
   const system::LocallyNonlinear& system_;
   Index n_, m_, k_ = 0;
   double h_ = 0.0;
+  std::optional<Rayleigh> rayleigh_;
   numerics::OrderedLdlt factor_;
   std::vector<Index> first_, second_;  // of each slider, among the last k places
-  std::vector<Index> order_last_;
-  std::vector<int> place_, start_, column_;
-  std::vector<Coefficients> coefficients_;
-  std::vector<Combined> combined_;
-  Vector right_, last_, push_, trial_;
+  std::vector<int> order_, place_;     // elimination place -> coordinate, and back
+  Vector mass_;                        // its diagonal; empty if it is not diagonal
+  int products_ = 0;
+  std::vector<int> start_, column_;  // rows in the order of elimination, columns likewise, those beyond the diagonal
+  std::vector<int> new_start_, new_column_;  // those that no earlier row has
+  std::vector<double> diagonal_, coefficient_;
+  Vector combined_, right_, last_, push_, trial_;
   ContactProblem contact_;
 };
 

@@ -13,8 +13,27 @@ const axis_style = {
   hoverformat: ".5~g", automargin: true,
 };
 
+/** Text as plotly.js shows it: it takes tags in names for markup. */
+function plot_text(text) {
+  return text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+}
+
 function axis(title, more = {}) {
-  return {...axis_style, title: {text: title, standoff: 8}, ...more};
+  return {...axis_style, title: {text: plot_text(title), standoff: 8, font: {size: 14}}, ...more};
+}
+
+/** A range with a margin around columns of numbers, so that closed curves do not touch the frame. */
+function padded_range(columns) {
+  let low = Infinity, high = -Infinity;
+  for (const column of columns) {
+    for (const value of column) {
+      if (value === null) continue;
+      low = Math.min(low, value);
+      high = Math.max(high, value);
+    }
+  }
+  const margin = 0.06 * (high - low) || 1;
+  return low <= high ? [low - margin, high + margin] : undefined;
 }
 
 const logarithmic = {type: "log", dtick: 1, zeroline: false, minor: {ticks: "inside", ticklen: 3}};
@@ -23,7 +42,7 @@ function complete_layout(layout, height, is_small) {
   return {
     height, autosize: true, paper_bgcolor: "#ffffff", plot_bgcolor: "#ffffff", hovermode: "closest",
     font: {family: "inherit", size: is_small ? 12 : 13, color: "#1c242c"},
-    margin: {l: 64, r: 16, t: 36, b: 48},
+    margin: {l: 64, r: 16, t: is_small ? 54 : 36, b: 48},
     legend: is_small ? {orientation: "h", x: 0, y: 1.02, yanchor: "bottom"}
                      : {x: 1.01, xanchor: "left", y: 1, bordercolor: "#d4dae0", borderwidth: 0, font: {size: 12}},
     hoverlabel: {bgcolor: "#ffffff", bordercolor: "#6c7680", font: {color: "#1c242c"}},
@@ -42,13 +61,13 @@ function complete_layout(layout, height, is_small) {
 function make_figure({caption, draw, choosers = [], height = 380, is_small = false}) {
   const number = ++figure_count;
   const chosen = choosers.map(() => 0);
-  const plot = element("div", {class: "plot", style: `height:${height}px`});
+  const plot = element("div", {class: "plot", role: "img", "aria-label": caption, style: `height:${height}px`});
   const save = element("button", {
-    type: "button", class: "save", title: `Download figure ${number} as SVG`,
+    type: "button", class: "save", title: `Download figure ${number} as SVG`, "aria-label": `Download figure ${number} as SVG`,
     onclick: () => Plotly.downloadImage(plot, {format: "svg", filename: `figure-${number}`,
                                                width: plot.clientWidth, height}),
-  }, "SVG");
-  const tools = element("div", {class: "tools"}, choosers.map((chooser, which) => element(
+  }, "Download SVG");
+  const tools = choosers.length === 0 ? null : element("div", {class: "tools"}, choosers.map((chooser, which) => element(
     "div", {class: "chooser", role: "group", "aria-label": chooser.label}, chooser.options.map((option, index) => element(
       "button", {type: "button", "aria-pressed": String(index === 0), onclick: (event) => {
         chosen[which] = index;
@@ -56,20 +75,21 @@ function make_figure({caption, draw, choosers = [], height = 380, is_small = fal
           button.setAttribute("aria-pressed", String(button === event.target));
         }
         render();
-      }}, option)))), save);
-  const node = element("figure", {id: `figure-${number}`, class: is_small ? "small" : undefined}, tools, plot,
-                       element("figcaption", {}, element("b", {}, `Figure ${number}. `), caption));
+      }}, option)))));
+  const node = element("figure", {id: `figure-${number}`}, ...(tools ? [tools] : []), plot, element(
+    "figcaption", {}, element("span", {}, element("b", {}, `Figure ${number}. `), caption), save));
 
   function render(size = {}) {
     const {traces, layout} = draw(chosen);
+    plot.style.height = `${size.height ?? height}px`;
     const config = {
       responsive: true, displaylogo: false, displayModeBar: "hover", doubleClick: "reset",
-      modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage"],
+      modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage", "sendChartToCloud"],
     };
     figure.is_drawn = true;
     return Plotly.react(plot, traces, {...complete_layout(layout, height, is_small), ...size}, config);
   }
-  const figure = {node, plot, render, is_small, is_drawn: false};
+  const figure = {node, render, height, is_small, is_drawn: false};
   figures.push(figure);
   return node;
 }
@@ -89,13 +109,17 @@ function watch_figures() {
   }, {rootMargin: "100% 0px"});
   for (const figure of figures) observer.observe(figure.node);
 
+  const folded = [...document.querySelectorAll("details:not([open])")];
   window.addEventListener("beforeprint", () => {
+    for (const details of folded) details.open = true;
     for (const figure of figures) {
       const width = figure.is_small ? (paper_width - paper_gap) / 2 : paper_width;
-      figure.render({width, autosize: false});
+      // Two full figures with their captions fit a page so.
+      figure.render({width, height: figure.is_small ? figure.height : 0.84 * figure.height, autosize: false});
     }
   });
   window.addEventListener("afterprint", () => {
+    for (const details of folded) details.open = false;
     for (const figure of figures) figure.render();
   });
 }

@@ -1,6 +1,6 @@
 // Tables of no kind that the report knows: as they are where they are short, else as lines over their rows.
 
-function write_tables(chapter, tables) {
+function write_tables(chapter, tables, digits = 6) {
   for (const table of tables) {
     const title = table.name ? phrase(table.name) : "Results";
     if (table.rows === 0) {
@@ -10,7 +10,7 @@ function write_tables(chapter, tables) {
     const width = table.overview.reduce((sum, columns) => sum + columns.length, 0);
     const body = [];
     const is_short = table.rows <= 60 && width <= 14;
-    if (is_short) body.push(results_table(table, `${title}, ${count_text(table.rows)} rows.`));
+    if (is_short) body.push(results_table(table, `${title}, ${count_text(table.rows)} rows.`, digits));
     if (table.variables[0].categories.length === 0 && table.rows > 2) {
       for (const variable of plotted_variables(table)) body.push(generic_figure(table, variable));
     } else if (!is_short) {
@@ -28,7 +28,7 @@ function generic_figure(table, variable) {
   return make_figure({
     caption: `${what}${how}${variable.dimension ? shortened(variable) : ""}`,
     draw: () => ({
-      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: line.name,
+      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                                             line: line_style(index), showlegend: true})),
       layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable))},
     }),

@@ -50,7 +50,7 @@ function ladder_figure(table, variable) {
     height: 560,
     draw: () => ({
       traces: [...slopes, ...series.map((line, index) => ({
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: phrase(line.name), line: line_style(index),
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plot_text(line.name), line: line_style(index),
         marker: {size: 5, symbol: index % 8}}))],
       layout: {xaxis: axis(axis_label(series[0].x_variable), logarithmic), yaxis: axis(axis_label(variable), logarithmic)},
     }),
@@ -59,35 +59,41 @@ function ladder_figure(table, variable) {
 
 function stability_figure(table, variable) {
   const series = series_of(table, variable);
-  // Beyond its limit an explicit method's radius grows without bound and would flatten the others.
-  const range = variable.name === "spectral_radius" ? {range: [0, 1.6]} : {};
+  // Beyond its limit an explicit method's radius grows without bound, and beyond pi a sampled period is that of an alias:
+  // either would flatten the others. Zooming out shows them.
+  const ranges = {spectral_radius: [0, 1.6], period_elongation: [-0.4, 1.6], numerical_damping: [-0.1, 0.6]};
   return make_figure({
-    caption: `${phrase(variable.name)} of each method over the step times the angular frequency of a mode.`, height: 460,
+    caption: `${phrase(variable.name)} of each method over the step times the angular frequency of a mode.`,
+    height: Math.max(460, 110 + 19 * series.length),
     draw: () => ({
-      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: phrase(line.name),
+      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                                             line: line_style(index)})),
-      layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable), range)},
+      layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable), {range: ranges[variable.name]})},
     }),
   });
 }
 
-/** For each method: its response beside the exact one, and their difference below. */
-function response_figures(table) {
+/**
+ * For each method: its response beside the exact one, and their difference below. Where the table is too long to be
+ * shown whole its last rows are: the extremes of buckets fall on other rows for each method and cannot be subtracted.
+ */
+function response_figures(whole) {
+  const table = {...whole, overview: whole.window ?? whole.overview};
   const variable = variable_of(table, "position") ?? plotted_variables(table)[0];
   const named = variable_of(table, "exact");
   const series = series_of(table, variable);
   const exact = named ? table.overview[named.index][0] : series.find((line) => line.name === "exact")?.y;
   return series.filter((line) => line.name !== "exact").map((line) => make_figure({
-    caption: `${phrase(line.name)}: response beside the exact one, and their difference below. ${overview_text(table)}`,
+    caption: `${line.name}: response beside the exact one, and their difference below. ${window_text(whole)}`,
     height: 360, is_small: true,
     draw: () => {
       const traces = [];
       if (exact) {
         traces.push({type: "scatter", mode: "lines", x: line.x, y: exact, name: "Exact", line: {color: "#1c242c", width: 2.4}});
       }
-      traces.push({type: "scatter", mode: "lines", x: line.x, y: line.y, name: phrase(line.name),
+      traces.push({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
                    line: {color: "#e69f00", width: 1.4, dash: "dash"}});
-      const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2"} : {}), yaxis: axis(axis_label(variable))};
+      const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2", mirror: "all"} : {}), yaxis: axis(axis_label(variable))};
       if (exact) {
         const difference = line.y.map((value, row) => (value === null || exact[row] === null ? null : value - exact[row]));
         traces.push({type: "scatter", mode: "lines", x: line.x, y: difference, yaxis: "y2", name: "Difference",
@@ -109,11 +115,17 @@ function write_method_study(chapter, analysis, theory) {
   if (ladder) {
     add_section(chapter, "Error against step", plotted_variables(ladder).map((variable) => ladder_figure(ladder, variable)));
   }
+  const unstable = of("unstable");
   if (response) add_section(chapter, "Responses", element("div", {class: "pair"}, response_figures(response)));
   if (stability) {
     add_section(chapter, "Spectral properties", plotted_variables(stability).map((variable) => stability_figure(stability, variable)));
   }
+  if (unstable) {
+    const [step, limit] = ["step", "stability_limit"].map((name) => Number(parseFloat(unstable.attributes[name]).toPrecision(6)));
+    add_section(chapter, "Beyond the stability limit", element(
+      "p", {}, `A step of ${step} s, beyond the limit of ${limit} s.`), element("div", {class: "pair"}, response_figures(unstable)));
+  }
   write_theory(chapter, theory);
-  const known = [main, ladder, stability, response];
-  write_tables(chapter, analysis.tables.filter((table) => !known.includes(table)));
+  const known = [main, ladder, stability, response, unstable];
+  write_tables(chapter, analysis.tables.filter((table) => !known.includes(table)), 10);
 }

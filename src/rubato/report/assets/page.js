@@ -22,6 +22,7 @@ function pretty_unit(unit) {
 
 /** "slider_dissipated" as a phrase: "Slider dissipated". */
 function phrase(name) {
+  if (name === "omega_h") return "ωh";
   const words = name.replaceAll("_", " ");
   return words.charAt(0).toUpperCase() + words.slice(1);
 }

@@ -22,7 +22,7 @@ function what_became(analysis) {
 function write_summary(parent) {
   const chapter = add_chapter(parent, "Summary");
   const statistics = (analysis) => Object.entries(analysis.attributes)
-    .filter(([name]) => !["type", "method", "step", "status", "message"].includes(name))
+    .filter(([name]) => !["type", "method", "step", "status", "message", "slider_stiffness", "slider_limit"].includes(name))
     .map(([name, value]) => `${name.replaceAll("_", " ")}: ${value}`).join("; ");
   chapter.node.append(...data.analyses.map(what_became).filter((node) => node));
   add_section(chapter, "Analyses", make_table({
@@ -34,7 +34,7 @@ function write_summary(parent) {
               method ?? "–", step ?? "–", badge(status), statistics(analysis) || "–"];
     }),
   }));
-  const facts = Object.entries(data.attributes).filter(([name]) => !["title", "study"].includes(name))
+  const facts = Object.entries(data.attributes).filter(([name]) => !["title", "study", "Conventions", "source"].includes(name))
     .map(([name, value]) => [phrase(name), value]);
   add_section(chapter, "Provenance", definitions([...facts, ["Results file", data.results_file]]));
   if (data.attributes.study) {
@@ -64,12 +64,12 @@ function write_page() {
   const main = element("main", {});
   const title = data.attributes.title || data.results_file;
   const version = data.attributes.version ? ` ${data.attributes.version}` : "";
-  main.append(element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
-                      element("h1", {}, title)));
-  const inline_contents = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
+  const header = element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
+                         element("h1", {}, title));
+  const navigation = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
   write_summary(main);
   data.analyses.forEach((analysis, index) => write_analysis(main, analysis, index));
-  document.getElementById("page").append(inline_contents, main);
+  document.getElementById("page").append(header, navigation, main);
   watch_figures();
 }
 

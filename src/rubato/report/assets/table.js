@@ -16,7 +16,7 @@ function make_table({caption, columns, rows, groups = null}) {
     (group) => element("th", {scope: "colgroup", colspan: String(group.span)}, group.title)));
   const body = rows.map((row) => element("tr", {}, row.map((cell, index) => element(
     index === 0 ? "th" : "td", {scope: index === 0 ? "row" : undefined, class: cell_class(index)}, cell))));
-  return element("div", {class: "table", id: `table-${number}`},
+  return element("div", {class: rows.length > 25 ? "table" : "table short", id: `table-${number}`},
                  element("p", {class: "caption"}, element("b", {}, `Table ${number}. `), caption),
                  element("div", {class: "scroll"}, element("table", {}, element("thead", {}, group_row, element("tr", {}, heads)),
                                                            element("tbody", {}, body))));
@@ -28,7 +28,8 @@ function results_table(table, caption, digits = 6) {
   table.variables.forEach((variable, index) => {
     table.overview[index].forEach((values, label) => {
       const name = variable.dimension ? `${variable.labels[label]} ${axis_label(variable)}` : axis_label(variable);
-      const words = variable.categories;
+      // netCDF keeps words without blanks; only names of methods have underscores of their own.
+      const words = variable.categories.map((word) => (variable.name === "method" ? word : word.replaceAll("_", " ")));
       columns.push({title: words.length ? phrase(variable.name) : name, is_text: words.length > 0,
                     cells: values.map((value) => (words.length ? words[value] ?? "–" : number_node(value, digits)))});
     });

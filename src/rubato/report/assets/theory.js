@@ -20,9 +20,10 @@ function runge_kutta_regions(entries) {
       traces: entries.map((entry, index) => ({
         type: "contour", x, y, z: y.map((im) => x.map((re) => modulus_of_polynomial(entry.coefficients, re, im))),
         contours: {type: "constraint", operation: "=", value: 1}, autocontour: false, showscale: false, hoverinfo: "name",
-        line: line_style(index), fillcolor: "rgba(0,0,0,0)", showlegend: true, name: entry.names.map(phrase).join(", "),
+        line: line_style(index), fillcolor: "rgba(0,0,0,0)", showlegend: true, name: entry.names.join(", "),
       })),
-      layout: {xaxis: axis("Re(hλ) [–]", {range: [-5.2, 2.2]}), yaxis: axis("Im(hλ) [–]", {scaleanchor: "x", range: [-4, 4]})},
+      layout: {xaxis: axis("Re(hλ) [–]", {range: [-5.2, 2.2], constrain: "domain"}),
+               yaxis: axis("Im(hλ) [–]", {scaleanchor: "x", range: [-4, 4], constrain: "domain"})},
     }),
   });
 }
@@ -32,11 +33,14 @@ function newmark_region(entries) {
   const region = (name, beta, gamma, color) => ({
     type: "scatter", mode: "lines", fill: "toself", x: beta, y: gamma, name, fillcolor: color, line: {width: 0}, hoverinfo: "name",
   });
+  const letter = (index) => String.fromCharCode(97 + index);
+  const key = entries.map((entry, index) => `${letter(index)} ${entry.names.join(", ")}`).join("; ");
   const gammas = Array.from({length: 61}, (_, i) => 0.5 + (gamma_end - 0.5) * i / 60);
   return make_figure({
     caption: "Stability of Newmark's method over its parameters. Unconditional where 2β ≥ γ ≥ 1/2; for γ ≥ 1/2 and 2β < γ an " +
       "undamped mode needs ωh ≤ 1/√(γ/2 − β); for γ < 1/2 it grows at any step. To the right of the curve " +
-      "β = (γ + 1/2)²/4 the roots stay complex at every step (no bifurcation).",
+      "β = (γ + 1/2)²/4 the roots stay complex at every step (no bifurcation). " +
+      `Points: ${key}.`,
     height: 520,
     draw: () => ({
       traces: [
@@ -46,8 +50,8 @@ function newmark_region(entries) {
         {type: "scatter", mode: "lines", x: gammas.map((gamma) => (gamma + 0.5) ** 2 / 4), y: gammas, name: "No bifurcation",
          line: {color: "#1c242c", dash: "dash", width: 1.5}},
         {type: "scatter", mode: "markers+text", x: entries.map((entry) => entry.beta), y: entries.map((entry) => entry.gamma),
-         text: entries.map((entry, index) => String.fromCharCode(97 + index)), textposition: "top center",
-         customdata: entries.map((entry) => entry.names.map(phrase).join(", ")),
+         text: entries.map((entry, index) => letter(index)), textposition: "top center",
+         customdata: entries.map((entry) => entry.names.join(", ")),
          hovertemplate: "%{customdata}<br>β = %{x:.5g}, γ = %{y:.5g}<extra></extra>", name: "Methods", cliponaxis: false,
          marker: {color: "#1c242c", size: 7}},
       ],
@@ -57,7 +61,5 @@ function newmark_region(entries) {
 }
 
 function write_theory(chapter, theory) {
-  const key = theory.newmark.map((entry, index) => `${String.fromCharCode(97 + index)} ${entry.names.map(phrase).join(", ")}`);
-  add_section(chapter, "Stability regions", runge_kutta_regions(theory.runge_kutta), newmark_region(theory.newmark),
-              element("p", {class: "note"}, `Points: ${key.join("; ")}.`));
+  add_section(chapter, "Stability regions", runge_kutta_regions(theory.runge_kutta), newmark_region(theory.newmark));
 }

@@ -25,7 +25,7 @@ function lines_over_rows(table, variable, range) {
   const columns = columns_of(table, range);
   return columns[variable.index].map((y, label) => ({
     type: "scatter", mode: "lines", x: columns[0][0], y, line: line_style(label), showlegend: true,
-    name: variable.dimension ? variable.labels[label] : phrase(variable.name),
+    name: plot_text(variable.dimension ? variable.labels[label] : phrase(variable.name)),
   }));
 }
 
@@ -33,9 +33,8 @@ function lines_over_rows(table, variable, range) {
 function history_figure(table, variables, subject) {
   const choosers = [{label: "Quantity", options: variables.map((variable) => phrase(variable.name))}];
   if (table.window) choosers.push(whole_or_window);
-  const others = variables.length > 1 ? " The buttons above choose the quantity." : "";
   return make_figure({
-    caption: `${subject} over ${table.variables[0].name}.${others} ${overview_text(table)}${shortened(variables[0])}`,
+    caption: `${subject} over ${table.variables[0].name}. ${overview_text(table)}${shortened(variables[0])}`,
     choosers, height: 400,
     draw: ([quantity, range = 0]) => ({
       traces: lines_over_rows(table, variables[quantity], range),
@@ -51,10 +50,11 @@ function phase_portrait(table, position, velocity) {
     caption: `Phase portrait: velocity against position. ${window_text(table)}${shortened(position)}`, height: 440,
     draw: () => ({
       traces: columns[position.index].map((x, label) => ({
-        type: "scatter", mode: "lines", x, y: columns[velocity.index][label], name: position.labels[label],
+        type: "scatter", mode: "lines", x, y: columns[velocity.index][label], name: plot_text(position.labels[label]),
         line: {...line_style(label), width: 1.3}, showlegend: true,
       })),
-      layout: {xaxis: axis(axis_label(position)), yaxis: axis(axis_label(velocity))},
+      layout: {xaxis: axis(axis_label(position), {range: padded_range(columns[position.index])}),
+               yaxis: axis(axis_label(velocity), {range: padded_range(columns[velocity.index])})},
     }),
   });
 }
@@ -76,6 +76,15 @@ function relative_displacement(table, force, label) {
   return {title: "Slip [m]", values: columns[slip.index][label]};
 }
 
+/** The Coulomb limits of a slider, where the results tell them. */
+function limit_lines(table, label, values) {
+  const limit = (table.attributes.slider_limit ?? "").split(/[\s,]+/).map(Number)[label];
+  const [low, high] = padded_range([values]) ?? [0, 0];
+  if (!(limit > 0)) return [];
+  return [{type: "scatter", mode: "lines", x: [low, high, null, low, high], y: [limit, limit, null, -limit, -limit], name: "±μN",
+           line: {color: "#6c7680", width: 1, dash: "dash"}, hoverinfo: "name", showlegend: true}];
+}
+
 function hysteresis_loops(table, force) {
   const most = 12;
   const columns = columns_of(table, 1);
@@ -87,9 +96,10 @@ function hysteresis_loops(table, force) {
     return make_figure({
       caption: `Hysteresis loop of ${force.labels[label]}. ${window_text(table)}${rest}`, height: 320, is_small: true,
       draw: () => ({
-        traces: [{type: "scatter", mode: "lines", x: displacement.values, y, name: force.labels[label],
+        traces: [...limit_lines(table, label, displacement.values), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
                   line: {...line_style(label), dash: "solid"}, showlegend: true}],
-        layout: {xaxis: axis(displacement.title), yaxis: axis(axis_label(force))},
+        layout: {xaxis: axis(displacement.title, {range: padded_range([displacement.values])}),
+                 yaxis: axis(axis_label(force), {range: padded_range([y])})},
       }),
     });
   }));
@@ -113,7 +123,7 @@ function energy_ledger(table) {
     height: 620, choosers,
     draw: ([range = 0]) => {
       const columns = columns_of(table, range);
-      const layout = {xaxis: axis(axis_label(table.variables[0]), {anchor: "y3"}), hovermode: "x"};
+      const layout = {xaxis: axis(axis_label(table.variables[0]), {anchor: "y3", mirror: "all"}), hovermode: "x"};
       const traces = [];
       ledger_panels.forEach((panel, index) => {
         const suffix = index === 0 ? "" : String(index + 1);
@@ -136,17 +146,18 @@ function key_numbers(table, variables, caption) {
   const groups = [{title: "", span: 1}];
   for (const variable of variables) {
     groups.push({title: axis_label(variable), span: 3});
-    columns.push({title: "largest"}, {title: "rms"}, {title: "late amplitude"});
+    columns.push({title: "max"}, {title: "rms"}, {title: "late"});
   }
   const rows = variables[0].labels.map((label, row) => [
-    label, ...variables.flatMap((variable) => table.key_numbers[variable.index][row].map((value) => number_node(value))),
+    label, ...variables.flatMap((variable) => table.key_numbers[variable.index][row].map((value) => number_node(value, 4))),
   ]);
   return make_table({caption: caption + shortened(variables[0]), columns, groups, rows});
 }
 
 function is_transient(analysis) {
   const table = analysis.tables[0];
-  return table && table.name === "" && table.row_dimension === "time" && variable_of(table, "position") !== null;
+  return table && table.name === "" && table.row_dimension === "time" &&
+    (variable_of(table, "position") !== null || analysis.attributes.type === "transient");
 }
 
 function write_transient(chapter, analysis) {
@@ -155,24 +166,28 @@ function write_transient(chapter, analysis) {
   const motion = of(["position", "velocity", "acceleration"]);
   const sliders = of(["force", "slip", "displacement"]);
   const ledger = analysis.tables.find((candidate) => candidate.name === "energy");
+  if (table.rows === 0) {
+    chapter.node.append(element("p", {class: "note"}, "It ended before its first row."));
+    return;
+  }
   if (motion.length) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
     if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
   }
   if (sliders.length) {
-    add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders"));
+    add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const force = variable_of(table, "force");
     if (force && (variable_of(table, "slip") || variable_of(table, "displacement"))) {
       add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
     }
   }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (table.key_numbers) {
-    const meaning = " Largest absolute value and root mean square over all rows; late amplitude: half of peak to peak over " +
-      "the last tenth of the duration.";
+  if (table.key_numbers && motion.length + sliders.length) {
+    const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
+      "last tenth of the duration. All rows count.";
     const numbers = [];
     if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
-    if (sliders.length) numbers.push(key_numbers(table, sliders, `Sliders.${meaning}`));
+    if (sliders.length) numbers.push(key_numbers(table, sliders, `Motion and force of the sliders.${meaning}`));
     add_section(chapter, "Key numbers", numbers);
   }
 }
