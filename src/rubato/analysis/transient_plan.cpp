@@ -76,6 +76,10 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
     case Kind::interval:
       plan.interval = positive(output.interval, parameters, "interval", where);
       plan.rows = std::floor(plan.duration / plan.interval) + 1.0;
+      if (plan.rows > 1e12)
+        throw InvalidInput(place(output.interval.where, where),
+                           fmt::format("an interval of {} s makes {:.3g} rows, more than can be written (1e12)",
+                                       plan.interval, plan.rows));
       break;
     case Kind::times:
       for (const auto& quantity : output.times) {
@@ -110,10 +114,11 @@ Observed observed_of(const model::ObservationDescription& description, const sys
   const auto index_of = [&](const std::string& name) {
     const auto& known = system.coordinates();
     const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end())
-      throw InvalidInput(description.where,
-                         fmt::format("observe names \"{}\", which is no coordinate{}", name, suggestion(name, known)));
-    return static_cast<Index>(found - known.begin());
+    if (found != known.end()) return static_cast<Index>(found - known.begin());
+    const bool lacks_spaces = name.find('-') != std::string::npos && nearest_name(name, known).empty();
+    throw InvalidInput(description.where,
+                       fmt::format("observe names \"{}\", which is no coordinate{}{}", name, suggestion(name, known),
+                                   lacks_spaces ? "; a difference is written with spaces, \"a - b\"" : ""));
   };
   if (description.second.empty()) return {description.first, index_of(description.first), ground};
   return {description.first + " - " + description.second, index_of(description.first), index_of(description.second)};

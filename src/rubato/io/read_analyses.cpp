@@ -38,7 +38,13 @@ std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& read
   const auto texts = reader.optional_texts("observe", &places);
   if (!texts) return std::nullopt;
   std::vector<ObservationDescription> observations;
-  for (std::size_t i = 0; i < texts->size(); ++i) observations.push_back(to_observation((*texts)[i], places[i]));
+  for (std::size_t i = 0; i < texts->size(); ++i) {
+    const std::string& text = (*texts)[i];
+    if (std::find(texts->begin(), texts->begin() + static_cast<std::ptrdiff_t>(i), text) !=
+        texts->begin() + static_cast<std::ptrdiff_t>(i))
+      throw InvalidInput(places[i], fmt::format("{}: observe names \"{}\" twice", reader.what(), text));
+    observations.push_back(to_observation(text, places[i]));
+  }
   return observations;
 }
 
@@ -76,8 +82,9 @@ TransientDescription read_transient(TomlReader& reader) {
   if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
   if (const toml::node* step = reader.node("step")) {
     if (step->is_table())
-      throw InvalidInput(reader.location(*step),
-                         reader.what() + ": automatic steps are not in this version; give the step as a number [s]");
+      throw InvalidInput(
+          reader.location(*step),
+          reader.what() + ": automatic steps are not available in this version; give the step as a number [s]");
     transient.step = reader.quantity("step");
   }
   transient.duration = reader.quantity("duration");
@@ -113,12 +120,15 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
     analysis.where = reader.where();
+    // The name of a file in the folder of results.
+    const auto is_unfit = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '.'; };
     analysis.name = reader.text("name");
     reader.rename(fmt::format("analysis \"{}\"", analysis.name));
-    if (analysis.name.empty() || analysis.name.find_first_of("/\\.\0") != std::string::npos ||
-        analysis.name == "results")
+    if (analysis.name.empty() || analysis.name == "results" ||
+        std::any_of(analysis.name.begin(), analysis.name.end(), is_unfit))
       throw InvalidInput(reader.where("name"), fmt::format("the analysis name \"{}\" becomes a file name: it cannot be "
-                                                           "empty or \"results\", or hold a slash or a dot",
+                                                           "empty or \"results\", or hold a slash, a dot or a control "
+                                                           "character",
                                                            analysis.name));
     for (const auto& other : analyses)
       if (other.name == analysis.name)
@@ -127,8 +137,8 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
     const std::string type = reader.text("type");
     if (std::find(planned.begin(), planned.end(), type) != planned.end())
       throw InvalidInput(reader.where("type"),
-                         fmt::format("analysis \"{}\": the type \"{}\" is not in this version (known: "
-                                     "transient, method_study)",
+                         fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
+                                     "available: transient, method_study",
                                      analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")

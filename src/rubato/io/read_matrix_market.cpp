@@ -52,7 +52,7 @@ bool numbers(std::string_view line, std::array<double, N>& values) {
          std::string_view::npos;
 }
 
-void require_symmetric(const model::MatrixDescription& matrix) {
+void require_symmetric(const model::MatrixDescription& matrix, const std::string& place) {
   std::unordered_map<std::uint64_t, double> entries;
   double largest = 0.0;
   const auto key = [](int row, int column) {
@@ -68,9 +68,9 @@ void require_symmetric(const model::MatrixDescription& matrix) {
     const double own = entries[key(entry.row, entry.column)];
     // What finite-element programs write is symmetric to the digits they print.
     if (std::abs(own - other) <= 1e-9 * largest) continue;
-    throw InvalidInput({matrix.file, 0, 0}, fmt::format("the matrix is not symmetric: entry ({0}, {1}) is {2}, entry "
-                                                        "({1}, {0}) is {3}",
-                                                        entry.row + 1, entry.column + 1, own, other));
+    throw InvalidInput({place, 0, 0}, fmt::format("the matrix is not symmetric: entry ({0}, {1}) is {2}, entry "
+                                                  "({1}, {0}) is {3}",
+                                                  entry.row + 1, entry.column + 1, own, other));
   }
 }
 
@@ -79,13 +79,15 @@ void require_symmetric(const model::MatrixDescription& matrix) {
 model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,
                                             const Location& where) {
   const std::string text = read_text(folder / file, file, where, largest_matrix, "the matrix");
+  const std::string place = file_in(folder, file);
+  refuse_binary(text, place, "a Matrix Market file is text");
   Lines lines(text);
   std::string_view line;
-  const auto here = [&] { return Location{file, lines.number(), 0}; };
+  const auto here = [&] { return Location{place, lines.number(), 0}; };
   const std::string expected =
       "the first line must be \"%%MatrixMarket matrix coordinate real symmetric\" (or general, "
       "integer, array)";
-  if (!lines.next(line)) throw InvalidInput({file, 0, 0}, "the file is empty; " + expected);
+  if (!lines.next(line)) throw InvalidInput({place, 0, 0}, "the file is empty; " + expected);
   std::string header(line);
   std::transform(header.begin(), header.end(), header.begin(), [](unsigned char c) { return std::tolower(c); });
   std::istringstream words(header);
@@ -100,7 +102,7 @@ model::MatrixDescription read_matrix_market(const std::string& file, const std::
   matrix.file = file;
   matrix.where = where;
   const bool is_symmetric = symmetry == "symmetric", is_array = format == "array";
-  if (!lines.next(line)) throw InvalidInput({file, 0, 0}, "the line of sizes is missing");
+  if (!lines.next(line)) throw InvalidInput({place, 0, 0}, "the line of sizes is missing");
   double rows = 0.0, columns = 0.0, count = 0.0;
   std::array<double, 2> two;
   std::array<double, 3> three;
@@ -135,6 +137,13 @@ model::MatrixDescription read_matrix_market(const std::string& file, const std::
       if (!(three[0] >= 1 && three[0] <= rows && three[1] >= 1 && three[1] <= rows))
         throw InvalidInput(
             here(), fmt::format("entry ({}, {}) lies outside the {} x {} matrix", three[0], three[1], rows, columns));
+      if (three[0] != std::floor(three[0]) || three[1] != std::floor(three[1]))
+        throw InvalidInput(here(), fmt::format("row and column must be whole numbers, got {} {}", three[0], three[1]));
+      if (is_symmetric && three[0] < three[1])
+        throw InvalidInput(here(),
+                           fmt::format("entry ({}, {}) lies above the diagonal; a symmetric file holds the lower "
+                                       "triangle, a general one holds both",
+                                       three[0], three[1]));
       row = static_cast<int>(three[0]) - 1;
       column = static_cast<int>(three[1]) - 1;
       value = three[2];
@@ -144,8 +153,8 @@ model::MatrixDescription read_matrix_market(const std::string& file, const std::
     add(row, column, value);
     if (is_array && ++row == matrix.size) row = is_symmetric ? ++column : (++column, 0);
   }
-  if (read < count) throw InvalidInput({file, 0, 0}, fmt::format("the file ends after {} of {} entries", read, count));
-  require_symmetric(matrix);
+  if (read < count) throw InvalidInput({place, 0, 0}, fmt::format("the file ends after {} of {} entries", read, count));
+  require_symmetric(matrix, place);
   return matrix;
 }
 

@@ -12,11 +12,16 @@ using namespace model;
 TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& folder) {
   const bool has_amplitude = reader.has("amplitude"), has_expression = reader.has("expression"),
              has_table = reader.has("table");
+  if (!has_amplitude && !has_expression && !has_table)
+    for (const char* key : {"amplitude", "expression", "table"}) reader.refuse_misspelling_of(key);
   if (has_amplitude + has_expression + has_table != 1)
     throw InvalidInput(reader.where(),
                        fmt::format("{} needs exactly one of \"amplitude\" (harmonic), \"expression\" (of "
                                    "t) and \"table\" (a CSV file), got {}",
                                    reader.what(), has_amplitude + has_expression + has_table));
+  const std::vector<std::string> of_harmonic{"angular_frequency", "frequency", "phase"};
+  if (has_expression || has_table) reader.refuse_beside(has_table ? "table" : "expression", of_harmonic);
+  if (!has_table) reader.refuse_beside(has_expression ? "expression" : "amplitude", {"beyond"});
   if (has_expression) {
     TimeFormulaDescription formula{reader.quantity("expression")};
     if (formula.formula.expression.empty()) formula.formula.expression = fmt::format("{}", formula.formula.value);
@@ -38,6 +43,8 @@ TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& fol
     throw InvalidInput(hertz->where,
                        reader.what() + " has both \"angular_frequency\" [rad/s] and \"frequency\" [Hz]; keep one");
   if (!angular && !hertz)
+    for (const char* key : {"angular_frequency", "frequency"}) reader.refuse_misspelling_of(key);
+  if (!angular && !hertz)
     throw InvalidInput(reader.where(), reader.what() + " lacks \"angular_frequency\" [rad/s] or \"frequency\" [Hz]");
   harmonic.angular_frequency = angular ? *angular : *hertz;
   harmonic.frequency_in_hertz = hertz.has_value();
@@ -58,6 +65,8 @@ DampingDescription read_damping(TomlReader& root) {
   auto reader = root.optional_table("damping", "[damping]");
   if (!reader) return {};
   const bool modal = reader->has("modal_ratio"), rayleigh = reader->has("rayleigh");
+  if (!modal && !rayleigh)
+    for (const char* key : {"modal_ratio", "rayleigh"}) reader->refuse_misspelling_of(key);
   if (modal == rayleigh)
     throw InvalidInput(reader->where(), modal ? "[damping] has both \"modal_ratio\" and \"rayleigh\"; keep one"
                                               : "[damping] needs \"modal_ratio\" or \"rayleigh\"; a dashpot is a "
@@ -73,12 +82,15 @@ DampingDescription read_damping(TomlReader& root) {
     description.modes = reader->optional_quantity("modes");
     damping = description;
   } else {
-    auto coefficients = reader->optional_table("rayleigh", "rayleigh");
+    reader->refuse_beside("rayleigh", {"modes"});
+    auto coefficients = reader->optional_table("rayleigh", "[damping]: rayleigh");
     RayleighDamping description;
     description.where = coefficients->where();
     description.mass = coefficients->optional_quantity("mass").value_or(Quantity(0.0));
     description.stiffness = coefficients->optional_quantity("stiffness").value_or(Quantity(0.0));
     coefficients->finish();
+    if (!coefficients->has("mass") && !coefficients->has("stiffness"))
+      throw InvalidInput(coefficients->where(), "[damping]: rayleigh needs \"mass\" [1/s], \"stiffness\" [s] or both");
     damping = description;
   }
   reader->finish();
@@ -97,7 +109,7 @@ std::optional<MatricesDescription> read_matrices(TomlReader& root, const std::fi
   matrices.mass = matrix("mass");
   if (reader->has("damping")) matrices.damping = matrix("damping");
   matrices.stiffness = matrix("stiffness");
-  matrices.names = reader->optional_texts("names").value_or(std::vector<std::string>{});
+  matrices.names = reader->optional_texts("names", &matrices.names_where).value_or(std::vector<std::string>{});
   matrices.position = reader->optional_quantities_by_name("position").value_or(decltype(matrices.position){});
   matrices.velocity = reader->optional_quantities_by_name("velocity").value_or(decltype(matrices.velocity){});
   reader->finish();
@@ -129,8 +141,8 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
   model.where = root.where();
   for (TomlReader& reader : root.tables("coordinate")) {
     CoordinateDescription coordinate;
-    coordinate.where = reader.where();
     coordinate.name = reader.text("name");
+    coordinate.where = reader.where("name");
     reader.rename(fmt::format("coordinate \"{}\"", coordinate.name));
     coordinate.mass = reader.quantity("mass");
     coordinate.position = reader.optional_quantity("position").value_or(Quantity(0.0));
@@ -156,6 +168,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     model.sliders.push_back(read_joining<SliderDescription>(reader));
     SliderDescription& slider = model.sliders.back();
     slider.name = name;
+    slider.where = reader.where("name");
     slider.stiffness = reader.quantity("stiffness");
     slider.friction_coefficient = reader.quantity("friction_coefficient");
     slider.normal_load = reader.quantity("normal_load");

@@ -20,6 +20,12 @@ model::TableDescription read_table(const std::string& file, const std::filesyste
 model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,
                                             const Location& where);
 
+/// Throws InvalidInput, at the file, for a text that holds a zero byte; `expected` says what it should be.
+void refuse_binary(const std::string& text, const std::string& file, const std::string& expected);
+
+/// A file that a study names, for messages: where it lies, seen from where the study was named.
+std::string file_in(const std::filesystem::path& folder, const std::string& file);
+
 /// The text of a file. Throws InvalidInput at `where` if it cannot be read or is larger than `limit` [bytes].
 std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
                       std::uintmax_t limit, const std::string& what);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -17,10 +18,50 @@ constexpr std::uintmax_t largest_study = 16u << 20;  // large models come from m
 void require_text(const std::string& text, const std::string& name) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw InvalidInput({name, 0, 0}, "the file is empty; `rubato example` shows what a study looks like");
-  const std::size_t zero = text.find('\0');
-  if (zero != std::string::npos)
-    throw InvalidInput({name, 0, 0},
-                       fmt::format("the file is binary (byte {} is zero); a study is a TOML text", zero + 1));
+  refuse_binary(text, name, "a study is a TOML text");
+}
+
+// toml++ reports an unclosed quote as the line break that it runs into.
+std::string syntax_hint(std::string_view description) {
+  return description.find("unescaped control characters") == std::string_view::npos
+             ? ""
+             : " (is the closing quote missing?)";
+}
+
+/// Tables of the study language that this version does not read.
+void refuse_planned_tables(const toml::table& table, const TomlReader& root) {
+  const std::vector<std::string> planned{"node",         "material", "section", "beam",   "support",
+                                         "displacement", "body",     "joint",   "gravity"};
+  for (const auto& [key, value] : table)
+    if (std::find(planned.begin(), planned.end(), key.str()) != planned.end())
+      throw InvalidInput(root.location(key),
+                         fmt::format("[[{}]] is not available in this version, which reads coordinates, springs, "
+                                     "dampers, sliders, forces and [matrices]",
+                                     key.str()));
+}
+
+/// Where [matrices] names its coordinates, their numbers serve in `observe` too.
+void name_by_number(const std::vector<std::string>& names, model::ObservationDescription& observation) {
+  for (std::string* name : {&observation.first, &observation.second}) {
+    std::size_t number = 0;
+    const auto [end, fault] = std::from_chars(name->data(), name->data() + name->size(), number);
+    if (fault == std::errc() && end == name->data() + name->size() && number >= 1 && number <= names.size() &&
+        std::find(names.begin(), names.end(), *name) == names.end())
+      *name = names[number - 1];
+  }
+}
+
+void name_by_number(model::StudyDescription& study) {
+  if (!study.model.matrices) return;
+  const auto& names = study.model.matrices->names;
+  for (auto& analysis : study.analyses) {
+    if (auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
+      if (!transient->observe) continue;
+      for (auto& observation : *transient->observe) name_by_number(names, observation);
+    } else if (auto& observe = std::get<model::MethodStudyDescription>(analysis.task).observe) {
+      name_by_number(names, *observe);
+    }
+  }
 }
 
 std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {
@@ -37,6 +78,9 @@ std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {
                          fmt::format("parameter \"{}\": a name is letters, digits and underscores, and does "
                                      "not begin with a digit",
                                      name));
+    if (numerics::is_function(name))
+      throw InvalidInput(value.where,
+                         fmt::format("parameter \"{0}\": the name is taken (the function {0}); choose another", name));
     parameters.push_back({name, value, value.where});
   }
   // toml++ sorts keys; a parameter may use those before it in the file.
@@ -47,6 +91,16 @@ std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {
 }
 
 }  // namespace
+
+void refuse_binary(const std::string& text, const std::string& file, const std::string& expected) {
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string::npos)
+    throw InvalidInput({file, 0, 0}, fmt::format("the file is binary (byte {} is zero); {}", zero + 1, expected));
+}
+
+std::string file_in(const std::filesystem::path& folder, const std::string& file) {
+  return (folder / file).lexically_normal().string();
+}
 
 std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
                       std::uintmax_t limit, const std::string& what) {
@@ -82,9 +136,10 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   } catch (const toml::parse_error& fault) {
     const auto& begin = fault.source().begin;
     throw InvalidInput({name, static_cast<int>(begin.line), static_cast<int>(begin.column)},
-                       fmt::format("this is no TOML: {}", fault.description()));
+                       fmt::format("this is no TOML: {}{}", fault.description(), syntax_hint(fault.description())));
   }
   TomlReader root(table, "the study", name);
+  refuse_planned_tables(table, root);
   model::StudyDescription study;
   study.file = name;
   study.text = text;
@@ -93,6 +148,7 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   study.model = read_model(root, folder);
   study.analyses = read_analyses(root);
   root.finish();
+  name_by_number(study);
   return study;
 }
 

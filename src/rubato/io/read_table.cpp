@@ -24,11 +24,19 @@ bool to_number(std::string_view text, double& value) {
   return fault == std::errc() && end == text.data() + text.size();
 }
 
+// A first row with a slip in its time must not pass for a header.
+bool begins_like_a_number(std::string_view line) {
+  return std::string_view("0123456789+-.").find(line.front()) != std::string_view::npos;
+}
+
 }  // namespace
 
 model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder,
                                    const Location& where) {
-  const std::string text = read_text(folder / file, file, where, largest_table, "the table");
+  std::string text = read_text(folder / file, file, where, largest_table, "the table");
+  const std::string place = file_in(folder, file);
+  refuse_binary(text, place, "a table is a text of two columns, time and value");
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // spreadsheets write this mark
   model::TableDescription table;
   table.file = file;
   table.where = where;
@@ -39,20 +47,15 @@ model::TableDescription read_table(const std::string& file, const std::filesyste
     const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
     begin = end + 1;
     ++line_number;
-    const Location here{file, line_number, 0};
+    const Location here{place, line_number, 0};
     if (line.empty() || line.front() == '#') continue;
     const auto separator = line.find_first_of(",;\t");
     double time = 0.0, value = 0.0;
     const bool is_pair = separator != std::string_view::npos && to_number(line.substr(0, separator), time) &&
                          to_number(line.substr(separator + 1), value);
-    if (!is_pair && header_allowed) {
-      double number;
-      if (separator == std::string_view::npos || !to_number(line.substr(0, separator), number)) {
-        header_allowed = false;
-        continue;
-      }
-    }
+    const bool is_header = header_allowed && !is_pair && !begins_like_a_number(line);
     header_allowed = false;
+    if (is_header) continue;
     if (!is_pair)
       throw InvalidInput(here, fmt::format("a row must be two numbers, time and value, with a comma between them; got "
                                            "\"{}\"",
@@ -67,7 +70,7 @@ model::TableDescription read_table(const std::string& file, const std::filesyste
     table.values.push_back(value);
   }
   if (table.times.size() < 2)
-    throw InvalidInput({file, 0, 0},
+    throw InvalidInput({place, 0, 0},
                        fmt::format("the table has {} row(s) of numbers; it needs two or more", table.times.size()));
   return table;
 }

@@ -12,7 +12,8 @@ std::string value_found(const toml::node& node) {
   if (const auto* number = node.as_integer()) return fmt::format("the number {}", number->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("the number {}", number->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-  if (node.is_array()) return "a list";
+  if (const auto* list = node.as_array())
+    return list->empty() ? "an empty list" : fmt::format("a list of {}", list->size());
   if (node.is_table()) return "a table";
   return "a date";
 }
@@ -24,6 +25,11 @@ TomlReader::TomlReader(const toml::table& table, std::string what, std::string f
 
 Location TomlReader::location(const toml::node& node) const {
   const auto& begin = node.source().begin;
+  return {file_, static_cast<int>(begin.line), static_cast<int>(begin.column)};
+}
+
+Location TomlReader::location(const toml::key& key) const {
+  const auto& begin = key.source().begin;
   return {file_, static_cast<int>(begin.line), static_cast<int>(begin.column)};
 }
 
@@ -42,7 +48,24 @@ bool TomlReader::has(const std::string& key) { return node(key) != nullptr; }
 const toml::node& TomlReader::required(const std::string& key) {
   const toml::node* found = node(key);
   if (found) return *found;
+  refuse_misspelling_of(key);
   throw InvalidInput(where(), fmt::format("{} lacks the key \"{}\"", what_, key));
+}
+
+void TomlReader::refuse_misspelling_of(const std::string& key) const {
+  for (const auto& [present, value] : table_) {
+    const std::string name(present.str());
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    if (nearest_name(name, std::vector<std::string>{key}).empty()) continue;
+    throw InvalidInput(location(present), fmt::format("{} has no key \"{}\"; did you mean \"{}\"?", what_, name, key));
+  }
+}
+
+void TomlReader::refuse_beside(const std::string& chosen, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys)
+    if (has(key))
+      throw InvalidInput(location(table_.find(key)->first),
+                         fmt::format("{}: \"{}\" does not go with \"{}\"; keep one of them", what_, key, chosen));
 }
 
 void TomlReader::refuse_type(const toml::node& node, const std::string& key, const std::string& expected) const {
@@ -171,6 +194,8 @@ std::optional<TomlReader> TomlReader::optional_table(const std::string& key, con
   const toml::node* found = node(key);
   if (!found) return std::nullopt;
   const auto* table = found->as_table();
+  if (!table && found->is_array_of_tables())
+    throw InvalidInput(location(*found), fmt::format("\"{0}\" must be written as [{0}], once", key));
   if (!table) refuse_type(*found, key, "a table");
   return TomlReader(*table, what, file_);
 }
@@ -190,9 +215,7 @@ void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const auto& begin = key.source().begin;
-    throw InvalidInput({file_, static_cast<int>(begin.line), static_cast<int>(begin.column)},
-                       fmt::format("{} has no key \"{}\"{}", what_, name, suggestion(name, known_)));
+    throw InvalidInput(location(key), fmt::format("{} has no key \"{}\"{}", what_, name, suggestion(name, known_)));
   }
 }
 

@@ -48,10 +48,15 @@ class TomlReader {
   std::vector<TomlReader> tables(const std::string& key);
   const toml::node* node(const std::string& key);
 
+  /// Throws for the first of `keys` that is present: each belongs to an alternative of `chosen`.
+  void refuse_beside(const std::string& chosen, const std::vector<std::string>& keys);
+  /// A missing key is more often misspelled than forgotten: points at the misspelling.
+  void refuse_misspelling_of(const std::string& key) const;
   /// Throws for a key that nothing asked for.
   void finish() const;
 
   Location location(const toml::node& node) const;
+  Location location(const toml::key& key) const;
   model::Quantity to_quantity(const toml::node& node, const std::string& key) const;
   [[noreturn]] void refuse_type(const toml::node& node, const std::string& key, const std::string& expected) const;
   const std::string& file() const { return file_; }

@@ -45,10 +45,28 @@ class Builder {
     return value;
   }
 
+  // Names head the columns of CSV files and of "a - b" in `observe`.
+  static void refuse_unfit(const std::string& name, const Location& where) {
+    const auto is_unfit = [](unsigned char c) {
+      return c < 0x20 || c == 0x7f || c == ',' || c == ';' || c == '"' || c == '/';
+    };
+    if (name.front() != ' ' && name.back() != ' ' && name.find(" - ") == std::string::npos &&
+        std::none_of(name.begin(), name.end(), is_unfit))
+      return;
+    std::string shown = name;
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    std::replace_if(shown.begin(), shown.end(), is_control, '?');
+    throw InvalidInput(
+        where, fmt::format("the name \"{}\" cannot head a column of results: no comma, semicolon, quote, slash, "
+                           "control character, \" - \", or space at its ends",
+                           shown));
+  }
+
   void add_coordinate(const std::string& name, const Location& where) {
     if (name.empty() || name == "ground")
       throw InvalidInput(where, name.empty() ? "a coordinate needs a name"
                                              : "the name \"ground\" is taken: it stands for what does not move");
+    refuse_unfit(name, where);
     if (!places_.emplace(name, static_cast<Index>(model_.coordinates.size())).second)
       throw InvalidInput(where, fmt::format("two coordinates are called \"{}\"", name));
     model_.coordinates.push_back(name);
@@ -91,6 +109,25 @@ class Builder {
     return SparseMatrix(0.5 * (sparse + SparseMatrix(sparse.transpose())));
   }
 
+  // A diagonal entry that is missing or not positive makes the matrix singular or worse.
+  static void require_masses(const MatricesDescription& matrices) {
+    std::vector<std::pair<int, double>> diagonal;
+    for (const auto& entry : matrices.mass.entries)
+      if (entry.row == entry.column) diagonal.emplace_back(entry.row, entry.value);
+    std::sort(diagonal.begin(), diagonal.end());
+    std::size_t i = 0;
+    for (int row = 0; row < matrices.mass.size; ++row) {
+      double mass = 0.0;
+      for (; i < diagonal.size() && diagonal[i].first == row; ++i) mass += diagonal[i].second;
+      if (mass > 0.0) continue;
+      const auto place = static_cast<std::size_t>(row);
+      const std::string name = place < matrices.names.size() ? matrices.names[place] : std::to_string(row + 1);
+      throw InvalidInput(matrices.mass.where,
+                         fmt::format("the mass matrix \"{}\" gives coordinate \"{}\" the mass {}; it must be positive",
+                                     matrices.mass.file, name, mass));
+    }
+  }
+
   void take_matrices(const MatricesDescription& matrices) {
     const auto refuse = [&](const Location& where, const std::string& key) {
       throw InvalidInput(where,
@@ -102,12 +139,22 @@ class Builder {
     if (!description_.springs.empty()) refuse(description_.springs.front().where, "spring");
     if (!description_.dampers.empty()) refuse(description_.dampers.front().where, "damper");
     const int size = matrices.mass.size;
+    require_masses(matrices);  // before anything of that size is made: the head of a file may announce any
     if (!matrices.names.empty() && static_cast<int>(matrices.names.size()) != size)
       throw InvalidInput(matrices.where,
                          fmt::format("[matrices]: {} names for {} coordinates", matrices.names.size(), size));
-    for (int i = 0; i < size; ++i)
-      add_coordinate(matrices.names.empty() ? std::to_string(i + 1) : matrices.names[static_cast<std::size_t>(i)],
-                     matrices.where);
+    for (int i = 0; i < size; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      const std::string number = std::to_string(i + 1);
+      const std::string& name = matrices.names.empty() ? number : matrices.names[place];
+      const Location& where = place < matrices.names_where.size() ? matrices.names_where[place] : matrices.where;
+      if (name != number && !name.empty() && name.find_first_not_of("0123456789") == std::string::npos)
+        throw InvalidInput(where,
+                           fmt::format("[matrices]: the name \"{}\" of coordinate {} is a number, and numbers mean "
+                                       "places; choose another",
+                                       name, number));
+      add_coordinate(name, where);
+    }
     if (!matrices.names.empty())
       for (int i = 0; i < size; ++i) places_.emplace(std::to_string(i + 1), i);  // numbers serve beside names
     FullMatrices full;
@@ -161,10 +208,12 @@ class Builder {
   }
 
   void take_damping() {
-    if (const auto* modal = std::get_if<ModalDamping>(&description_.damping)) {
-      if (description_.matrices && description_.matrices->damping)
-        throw InvalidInput(modal->where,
-                           "modal_ratio and the damping matrix of [matrices] would count damping twice; keep one");
+    const auto* modal = std::get_if<ModalDamping>(&description_.damping);
+    const auto* rayleigh = std::get_if<RayleighDamping>(&description_.damping);
+    if ((modal || rayleigh) && description_.matrices && description_.matrices->damping)
+      throw InvalidInput(modal ? modal->where : rayleigh->where,
+                         "[damping] and the damping matrix of [matrices] would count damping twice; keep one");
+    if (modal) {
       ModalDampingRatios ratios;
       const auto n = model_.size();
       for (const Quantity& ratio : modal->ratios) ratios.ratios.push_back(at_least_zero(ratio, "modal_ratio"));
@@ -183,7 +232,7 @@ class Builder {
                                        "mode",
                                        given, damped));
       model_.damping = ratios;
-    } else if (const auto* rayleigh = std::get_if<RayleighDamping>(&description_.damping)) {
+    } else if (rayleigh) {
       model_.damping = RayleighCoefficients{at_least_zero(rayleigh->mass, "rayleigh: mass"),
                                             at_least_zero(rayleigh->stiffness, "rayleigh: stiffness")};
     }
@@ -192,6 +241,8 @@ class Builder {
   void take_sliders() {
     for (const SliderDescription& description : description_.sliders) {
       const std::string part = fmt::format("slider \"{}\"", description.name);
+      if (description.name.empty()) throw InvalidInput(description.where, "a slider needs a name");
+      refuse_unfit(description.name, description.where);
       for (const Slider& other : model_.sliders)
         if (other.name == description.name)
           throw InvalidInput(description.where, fmt::format("two sliders are called \"{}\"", description.name));
@@ -222,7 +273,12 @@ class Builder {
     }
     if (const auto* formula = std::get_if<TimeFormulaDescription>(&description)) {
       try {
-        return FormulaLaw{numerics::Expression(formula->formula.expression, parameters_, true)};
+        FormulaLaw formula_law{numerics::Expression(formula->formula.expression, parameters_, true)};
+        const double start = formula_law.formula(0.0);
+        if (!std::isfinite(start))
+          throw InvalidInput(fmt::format("\"{}\" is {} at t = 0; give a formula that is finite at all times",
+                                         formula->formula.expression, std::isnan(start) ? std::abs(start) : start));
+        return formula_law;
       } catch (const InvalidInput& fault) {
         throw InvalidInput(formula->formula.where, part + ": " + fault.message());
       }

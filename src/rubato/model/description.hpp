@@ -144,6 +144,7 @@ struct MatricesDescription {
   std::optional<MatrixDescription> damping;                          ///< [N s/m]
   MatrixDescription stiffness;                                       ///< [N/m]
   std::vector<std::string> names;                                    ///< of the coordinates; "1", "2", ... unless given
+  std::vector<Location> names_where;                                 ///< of each name, or empty
   std::vector<std::pair<std::string, Quantity>> position, velocity;  ///< at the start, where not zero
   Location where;
 };

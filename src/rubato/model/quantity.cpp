@@ -18,7 +18,8 @@ double evaluate(const Quantity& quantity, const numerics::Parameters& parameters
   }
   if (!std::isfinite(value)) {
     const std::string source = quantity.expression.empty() ? "" : fmt::format(" (from \"{}\")", quantity.expression);
-    throw InvalidInput(quantity.where, fmt::format("{} is {}{}; give a finite number", what, value, source));
+    throw InvalidInput(quantity.where, fmt::format("{} is {}{}; give a finite number", what,
+                                                   std::isnan(value) ? std::abs(value) : value, source));
   }
   return value;
 }

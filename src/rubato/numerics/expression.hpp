@@ -17,7 +17,7 @@ using Parameters = std::vector<std::pair<std::string, double>>;
 class Expression {
  public:
   /// Throws InvalidInput whose message says what is wrong and at which character of the text (from 1), with the nearest
-  /// known name where a name is unknown.
+  /// known name where a name is unknown. A list ("1, 5") and an assignment ("a = 5") are refused.
   /// @param text        the formula
   /// @param parameters  the names it may use, with their values
   /// @param of_time     whether `t` is known
@@ -40,5 +40,8 @@ class Expression {
   bool of_time_ = false;
   std::unique_ptr<Engine> engine_;
 };
+
+/// Whether a name is one of muParser's functions, which a parameter cannot bear.
+bool is_function(const std::string& name);
 
 }  // namespace rubato::numerics

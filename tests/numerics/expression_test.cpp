@@ -1,0 +1,90 @@
+#include <rubato/core/error.hpp>
+#include <rubato/numerics/expression.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace rubato::numerics {
+namespace {
+
+const Parameters parameters{{"N0", 10.0}, {"Omega", 2.0}};
+
+std::string fault_of(const std::string& text, bool of_time = false) {
+  try {
+    const Expression expression(text, parameters, of_time);
+    return "accepted";
+  } catch (const InvalidInput& fault) {
+    return fault.message();
+  }
+}
+
+TEST(Expression, EvaluatesFormulasOfParametersAndPi) {
+  EXPECT_EQ(Expression("2 * N0 + Omega^2", parameters)(), 24.0);
+  EXPECT_EQ(Expression("2 * pi", parameters)(), 2.0 * std::numbers::pi);
+  EXPECT_EQ(Expression("N0 == 10 ? 1 : 0", parameters)(), 1.0);
+  EXPECT_EQ(Expression("(N0 != 10) + (N0 <= 10) + (N0 >= 11)", parameters)(), 1.0);
+}
+
+TEST(Expression, FollowsTime) {
+  const Expression force("N0 * cos(Omega * t)", parameters, true);
+  EXPECT_EQ(force(0.0), 10.0);
+  // Both sides round the same product once and call the same cosine.
+  EXPECT_DOUBLE_EQ(force(0.7), 10.0 * std::cos(2.0 * 0.7));
+}
+
+TEST(Expression, CopiesDoNotShareTheirTime) {
+  const Expression first("t", {}, true);
+  const Expression second = first;
+  EXPECT_EQ(first(1.0), 1.0);
+  EXPECT_EQ(second(2.0), 2.0);
+  EXPECT_EQ(first(3.0), 3.0);
+}
+
+TEST(Expression, MayBeNonFiniteForItsCallerToJudge) {
+  EXPECT_TRUE(std::isinf(Expression("1/0", {})()));
+  EXPECT_TRUE(std::isnan(Expression("0/0", {})()));
+}
+
+TEST(ExpressionFault, NamesAnUnknownNameItsPlaceAndTheNearest) {
+  EXPECT_EQ(
+      fault_of("3 * Omga"),
+      "in the expression \"3 * Omga\": unknown name \"Omga\" at character 5; did you mean \"Omega\"? (known: pi, N0, "
+      "Omega)");
+  EXPECT_EQ(fault_of("3 * t"), "in the expression \"3 * t\": unknown name \"t\" at character 5; known: pi, N0, Omega");
+  EXPECT_EQ(fault_of("3 * t", true), "accepted");
+  EXPECT_EQ(fault_of("_pi"),
+            "in the expression \"_pi\": unknown name \"_pi\" at character 1; did you mean \"pi\"? (known: "
+            "pi, N0, Omega)");
+}
+
+TEST(ExpressionFault, CountsCharactersFromOneAndSaysTheEnd) {
+  EXPECT_EQ(fault_of("sin(2 N0)"), "in the expression \"sin(2 N0)\": unexpected value \"N0\" at character 7");
+  EXPECT_EQ(fault_of("2 * (N0 + 1"), "in the expression \"2 * (N0 + 1\": missing parenthesis at its end");
+  EXPECT_EQ(fault_of("2 *"), "in the expression \"2 *\": unexpected end of expression at its end");
+}
+
+// muParser alone would take the last of a list: 1,5 would be 5.
+TEST(ExpressionFault, RefusesADecimalComma) {
+  EXPECT_EQ(fault_of("1,5"),
+            "in the expression \"1,5\": 2 values with commas between them; give one, with a point for its decimals");
+}
+
+// muParser alone would set the time to 3.
+TEST(ExpressionFault, RefusesAnAssignment) {
+  EXPECT_EQ(fault_of("1 + (t = 3)", true),
+            "in the expression \"1 + (t = 3)\": \"=\" at character 8 assigns, which a formula cannot; a comparison is "
+            "written "
+            "\"==\"");
+}
+
+TEST(Function, NamesAreKnown) {
+  EXPECT_TRUE(is_function("sin"));
+  EXPECT_TRUE(is_function("max"));
+  EXPECT_FALSE(is_function("Omega"));
+}
+
+}  // namespace
+}  // namespace rubato::numerics
