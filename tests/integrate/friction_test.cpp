@@ -169,7 +169,9 @@ TEST(Slider, InFullStickIsASpringAndWithoutLimitIsNothing) {
   parts.loads = stuck.loads();
   const system::LocallyNonlinear spring(std::move(parts));
   for (const char* method : {"generalized_alpha", "wilson_theta", "exponential", "rk4"}) {
-    EXPECT_NEAR(advance(stuck, method, 0.01, 20.0).q[0], advance(spring, method, 0.01, 20.0).q[0], 1e-13) << method;
+    // The exponential method's slider force is linear over a step, which a spring's is not: h^2/12 of it.
+    const double tolerance = std::string(method) == "exponential" ? 1e-5 : 1e-13;
+    EXPECT_NEAR(advance(stuck, method, 0.01, 20.0).q[0], advance(spring, method, 0.01, 20.0).q[0], tolerance) << method;
     EXPECT_NEAR(advance(free, method, 0.01, 20.0).q[0], advance(testing::single_mass(), method, 0.01, 20.0).q[0], 1e-13)
         << method;
   }

@@ -50,18 +50,20 @@ TEST(StabilityLimit, DividesGrowthFromNone) {
       const double h = factor * stability_limit(make_method(method));
       const auto stepper = make_stepper(make_method(method), system);
       system::State state = consistent_start(system, system.start());
-      march(*stepper, state, h, 1000.0 * h);
+      march(*stepper, state, h, 1e6 * h);  // Dormand-Prince grows by 3e-5 a step only
       EXPECT_EQ(std::abs(state.q[0]) > 1e6, factor > 1.0) << method;
     }
 }
 
 TEST(SpectralRadius, AtInfinityIsWhatTheParametersAskFor) {
   for (const double rho : {0.0, 0.3, 0.8, 0.9}) {
-    EXPECT_NEAR(spectral_radius_at_infinity(make_method("generalized_alpha", {{"rho_inf", rho}})), rho, 1e-5) << rho;
-    EXPECT_NEAR(spectral_radius_at_infinity(make_method("wbz", {{"rho_inf", rho}})), rho, 1e-5) << rho;
+    EXPECT_NEAR(spectral_radius_at_infinity(make_method("generalized_alpha", {{"rho_inf", rho}})), rho, 1e-4)
+        << rho;  // round-off of a double root
+    EXPECT_NEAR(spectral_radius_at_infinity(make_method("wbz", {{"rho_inf", rho}})), rho, 1e-4)
+        << rho;  // round-off of a double root
   }
   for (const double alpha : {-0.3, -0.05})
-    EXPECT_NEAR(spectral_radius_at_infinity(make_method("hht", {{"alpha", alpha}})), (1 + alpha) / (1 - alpha), 1e-5);
+    EXPECT_NEAR(spectral_radius_at_infinity(make_method("hht", {{"alpha", alpha}})), (1 + alpha) / (1 - alpha), 1e-4);
   EXPECT_NEAR(spectral_radius_at_infinity(make_method("average_acceleration")), 1.0, 1e-6);
 }
 
