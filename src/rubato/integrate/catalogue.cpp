@@ -196,8 +196,8 @@ const Entry& find_entry(const std::string& name) {
   std::vector<std::string> known;
   for (const Entry& entry : all) known.push_back(entry.info.name);
   const std::string nearest = nearest_name(name, known);
-  throw InvalidInput(fmt::format("unknown method \"{}\"{}; `rubato methods` lists them", name,
-                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  throw InvalidInput(fmt::format("unknown method \"{}\"{} `rubato methods` lists them", name,
+                                 nearest.empty() ? ";" : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
 struct Range {
