@@ -29,8 +29,7 @@ void ContactProblem::reset(const Matrix& compliance, const std::vector<model::Sl
   factored_set_.assign(static_cast<std::size_t>(m_), 2);  // no such state: forces the first factorisation
   tangent_.resize(m_, m_);
   right_.resize(m_);
-  solution_.resize(m_);
-  factor_ = Eigen::PartialPivLU<Matrix>(Matrix::Identity(m_, m_));
+  row_swaps_.resize(m_);
 }
 
 // Each slider in one of three states: at most nine sets, visited by the same iteration as many sliders.
@@ -92,20 +91,21 @@ void ContactProblem::force_of_the_set(const double* trial, double* force) {
         tangent_.row(i).setZero();
       tangent_(i, i) += 1.0;
     }
-    factor_.compute(tangent_);
+    // What PartialPivLU calls, without the permutation that it allocates.
+    int transpositions = 0;
+    Eigen::internal::partial_lu_inplace(tangent_, row_swaps_, transpositions);
     factored_set_ = set_;
   }
   for (Index i = 0; i < m_; ++i) {
     const int state = set_[static_cast<std::size_t>(i)];
     right_[i] = state == 0 ? trial[i] : state * limit_[i];
   }
-  solution_ = right_;
-  factor_.permutationP().applyThisOnTheLeft(solution_);
-  factor_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(solution_);
-  factor_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(solution_);
+  for (Index i = 0; i < m_; ++i) std::swap(right_[i], right_[row_swaps_.coeff(i)]);
+  tangent_.triangularView<Eigen::UnitLower>().solveInPlace(right_);
+  tangent_.triangularView<Eigen::Upper>().solveInPlace(right_);
   for (Index i = 0; i < m_; ++i) {
     const int state = set_[static_cast<std::size_t>(i)];
-    force[i] = state == 0 ? solution_[i] : state * limit_[i];
+    force[i] = state == 0 ? right_[i] : state * limit_[i];
   }
 }
 

@@ -49,9 +49,9 @@ class ContactProblem {
   double q_[2][2] = {{0, 0}, {0, 0}};
   double l_[2] = {0, 0};
   std::vector<int> set_, next_, factored_set_;
-  Matrix tangent_;
-  Vector right_, solution_;
-  Eigen::PartialPivLU<Matrix> factor_;
+  Matrix tangent_;  // factorised in place
+  Vector right_;
+  Eigen::Transpositions<Eigen::Dynamic> row_swaps_;
   Index worst_ = -1;
 };
 
