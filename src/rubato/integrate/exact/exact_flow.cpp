@@ -1,6 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
-#include <rubato/integrate/exact/first_crossing.hpp>
+#include <rubato/integrate/exact/first_exit.hpp>
 
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ ExactFlow::ExactFlow(const system::LocallyNonlinear& system)
       states_(static_cast<std::size_t>(system.slider_count()), SliderState::stick),
       decided_(states_),
       critical_(states_.size(), false),
-      margin_(TaylorPiece::degree + 1) {}
+      path_(TaylorPiece::degree + 1) {}
 
 // Sliders at their limit are snapped to it, and stick or slip by the first term of u that is not round-off. Deciding
 // one changes later terms of the others only, so that the decision is repeated until it stands.
@@ -91,36 +91,29 @@ void ExactFlow::decide_states(system::State& state, double table_end) {
 
 double ExactFlow::next_event(double length, Index& slider) {
   double first = -1.0;
-  const auto consider = [&](Index i, double reach) {
-    const double s = first_crossing(margin_, reach);
-    if (s < 0.0 || (first >= 0.0 && s >= first)) return;
-    first = s;
-    slider = i;
-  };
   for (Index i = 0; i < static_cast<Index>(states_.size()); ++i) {
     if (is_idle(i)) continue;
     const auto& element = system_.sliders()[static_cast<std::size_t>(i)];
     const double* u = piece_.relative_displacement(i);
     const SliderState state = states_[static_cast<std::size_t>(i)];
-    const double reach = first < 0.0 ? length : first;
-    if (state != SliderState::stick) {  // margin: the rate of slip
-      margin_.back() = 0.0;
-      for (std::size_t k = 0; k + 1 < margin_.size(); ++k)
-        margin_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
-      if (std::abs(margin_[0]) * piece_.max_length() <= at_rest * element.limit / element.stiffness) margin_[0] = 0.0;
-      consider(i, reach);
-      continue;
-    }
-    for (const int side : {1, -1}) {  // margin: limit - side * force
-      for (std::size_t k = 0; k < margin_.size(); ++k) margin_[k] = -side * element.stiffness * u[k];
-      margin_[0] += element.limit - side * piece_.offset(i);
+    const double reach = first < 0.0 ? length : first, tau = piece_.max_length();
+    double s = -1.0;
+    if (state == SliderState::stick) {  // its force reaches a limit
+      for (std::size_t k = 0; k < path_.size(); ++k) path_[k] = element.stiffness * u[k];
+      path_[0] += piece_.offset(i);
       // At the limit and, but for round-off, at rest: it has been decided that it moves inward.
-      if (std::abs(margin_[0]) <= 2.0 * at_limit * element.limit) {
-        margin_[0] = 0.0;
-        if (std::abs(margin_[1]) * piece_.max_length() <= at_rest * element.limit) margin_[1] = 0.0;
-      }
-      consider(i, first < 0.0 ? length : first);
+      const bool on_edge = std::abs(path_[0]) >= element.limit * (1.0 - 2.0 * at_limit);
+      if (on_edge && std::abs(path_[1]) * tau <= at_rest * element.limit) path_[1] = 0.0;
+      s = first_exit(path_, -element.limit, element.limit, reach);
+    } else {  // its slip comes to rest
+      path_.back() = 0.0;
+      for (std::size_t k = 0; k + 1 < path_.size(); ++k) path_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
+      if (std::abs(path_[0]) * tau <= at_rest * element.limit / element.stiffness) path_[0] = 0.0;
+      s = first_exit(path_, 0.0, HUGE_VAL, reach);
     }
+    if (s < 0.0 || (first >= 0.0 && s >= first)) continue;
+    first = s;
+    slider = i;
   }
   return first;
 }

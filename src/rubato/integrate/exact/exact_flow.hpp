@@ -70,7 +70,7 @@ class ExactFlow {
   TaylorPiece piece_;
   std::vector<SliderState> states_, decided_;
   std::vector<bool> critical_;
-  std::vector<double> margin_;
+  std::vector<double> path_;  ///< coefficients of a force, or of a rate of slip
   system::State now_;
 };
 

@@ -1,4 +1,4 @@
-#include <rubato/integrate/exact/first_crossing.hpp>
+#include <rubato/integrate/exact/first_exit.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 
 #include <Eigen/Cholesky>
@@ -78,6 +78,7 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
   inverse_root_ = mass.matrixL().solve(Matrix::Identity(n_, n_));
   dense_damping_ = Matrix(system.damping());
   damping_ = mass.solve(dense_damping_);
+  damping_norm_ = largest_eigenvalue(inverse_root_ * dense_damping_ * inverse_root_.transpose());
   pattern_ = Matrix::Zero(n_, terms_);
   Matrix joins = Matrix::Zero(n_, m_);
   for (Index i = 0; i < terms_; ++i) {
@@ -121,8 +122,8 @@ const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<Slider
   }
   // |eigenvalue| <= the positive root of x^2 = c x + k with the norms of C and K in the metric of M.
   const double k = largest_eigenvalue(inverse_root_ * stiffness * inverse_root_.transpose());
-  const double c = largest_eigenvalue(inverse_root_ * dense_damping_ * inverse_root_.transpose());
-  const double rho = std::max(0.5 * (c + std::sqrt(c * c + 4.0 * k)), largest_load_frequency_);
+  const double rho =
+      std::max(0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k)), largest_load_frequency_);
   Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness), reach / std::max(rho, 1e-300)};
   return cache_.emplace(std::move(key), std::move(operators)).first->second;
 }

@@ -72,7 +72,7 @@ class TaylorPiece {
   Matrix q_, v_, u_, load_;  // coefficients by columns of degree; u and loads by columns of slider and term
   Vector offset_;
   mutable Vector work_q_, work_v_, work_product_;
-  double largest_load_frequency_ = 0.0;
+  double largest_load_frequency_ = 0.0, damping_norm_ = 0.0;
 };
 
 }  // namespace rubato::integrate
