@@ -1,4 +1,3 @@
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/rubato)
 install(TARGETS rubato EXPORT rubato-targets FILE_SET HEADERS)

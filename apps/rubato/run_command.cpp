@@ -11,6 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 namespace rubato::app {
 namespace {
 
@@ -47,7 +50,9 @@ int run(const RunOptions& options) {
     netcdf.close();
   } catch (const OutputError& fault) {
     fmt::print(stderr, "error: {}\n", fault.what());
-    return exit_failed;
+    // HDF5 tries once more to write what it could not as the process ends, and crashes: leave without it.
+    std::fflush(nullptr);
+    std::_Exit(exit_failed);
   }
   try {
     report::write_report(folder / "results.nc", folder / "report.html");

@@ -70,7 +70,7 @@ TEST(AnalysisError, RefusesAStepBeyondTheStabilityLimit) {
 TEST(AnalysisError, NamesTheMethodAndWhatItTakes) {
   EXPECT_EQ(
       verdict_adding("method = \"damped_newmrk\"\n"),
-      "study.toml:42:10: error: unknown method \"damped_newmrk\"; did you mean \"damped_newmark\"?; `rubato methods` "
+      "study.toml:42:10: error: unknown method \"damped_newmrk\"; did you mean \"damped_newmark\"? `rubato methods` "
       "lists them");
   EXPECT_EQ(verdict_adding("method = { name = \"hht\", alfa = -0.1 }\n"),
             "study.toml:42:10: error: method \"hht\" has no parameter \"alfa\"; known: alpha");

@@ -1,7 +1,7 @@
 """Opens a report in headless Chromium and uses it as a reader would.
 
 Usage: browser_test.py REPORT.html. Python's standard library speaks WebDriver to chromedriver. Exit status 77 (skipped)
-where Chromium or chromedriver is not installed.
+where Chromium or chromedriver is not installed, or where there is no loopback network.
 """
 
 import base64
@@ -9,6 +9,7 @@ import json
 import pathlib
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -195,6 +196,13 @@ class Report(unittest.TestCase):
 if __name__ == "__main__":
     if not (shutil.which("chromium") and shutil.which("chromedriver")):
         print("skipped: chromium or chromedriver is not installed")
+        sys.exit(77)
+    try:
+        socket.create_server(("127.0.0.1", 0)).close()
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.connect(("127.0.0.1", 9))
+    except OSError as fault:
+        print(f"skipped: chromedriver is spoken to over 127.0.0.1, which this machine lacks: {fault}")
         sys.exit(77)
     page = pathlib.Path(sys.argv.pop(1)).resolve()
     unittest.main(argv=["browser_test"], verbosity=2)

@@ -89,7 +89,7 @@ std::vector<Entry> make_entries() {
                             "k1 = F(t0, y0), k2 = F(t0 + h/2, y0 + h/2 k1), k3 = F(t0 + 3/4 h, y0 + 3/4 h k2)\n"
                             "y1 = y0 + h (2 k1 + 3 k2 + 4 k3)/9",
                             "Bogacki and Shampine 1989", numerics::bogacki_shampine()));
-  all.push_back(runge_kutta("dormand_prince", "omega h <= 0.9913",
+  all.push_back(runge_kutta("dormand_prince", "omega h <= 0.9972",
                             "six stages of the 5(4) pair; y1 of order 5, the order 4 solution estimates the error",
                             "Dormand and Prince 1980, table 2", numerics::dormand_prince()));
   const std::string newmark_source = "Newmark 1959; Hughes 1987, 9.1";
@@ -196,8 +196,8 @@ const Entry& find_entry(const std::string& name) {
   std::vector<std::string> known;
   for (const Entry& entry : all) known.push_back(entry.info.name);
   const std::string nearest = nearest_name(name, known);
-  throw InvalidInput(fmt::format("unknown method \"{}\"{}; `rubato methods` lists them", name,
-                                 nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest)));
+  throw InvalidInput(fmt::format("unknown method \"{}\"{} `rubato methods` lists them", name,
+                                 nearest.empty() ? ";" : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
 struct Range {

@@ -70,12 +70,15 @@ bool ContactProblem::solve_two(const double* trial, const double* previous, doub
 
 int ContactProblem::state_of(Index i, const double* trial, const double* force) const {
   const double limit = limit_[i];
-  double rest = trial[i];
-  for (Index j = 0; j < m_; ++j) rest -= scaled_compliance_(i, j) * force[j];
-  const double size = std::max(limit, std::abs(rest));
+  double rest = trial[i], size = limit + std::abs(trial[i]);
+  for (Index j = 0; j < m_; ++j) {
+    const double share = scaled_compliance_(i, j) * force[j];
+    rest -= share;
+    size += std::abs(share);
+  }
   const int state = set_[static_cast<std::size_t>(i)];
   if (state == 0) return std::abs(force[i]) <= limit + round_off * size ? 0 : side_of_limit(force[i], limit);
-  return state * rest >= limit - round_off * size ? state : side_of_limit(rest, limit);
+  return state * rest >= limit - round_off * size ? state : 0;
 }
 
 // Rows of sticking sliders: f + Q f = trial; rows of slipping ones: f = +-limit. The size never changes, so neither
