@@ -140,7 +140,7 @@ TEST(MethodStudyError, WantsALinearModelUnderHarmonicLoads) {
   EXPECT_EQ(verdict(linear + "observe = \"tip\"\n"),
             "study.toml:35:11: error: observe names \"tip\", which is no coordinate; known: disk, blade");
   EXPECT_EQ(verdict(linear + "methods = [\"rk4\", \"rk5\"]\n"),
-            "study.toml:35:19: error: unknown method \"rk5\"; did you mean \"rk3\"?; `rubato methods` lists them");
+            "study.toml:35:19: error: unknown method \"rk5\"; did you mean \"rk3\"? `rubato methods` lists them");
 }
 
 TEST(AnalysisError, RefusesAKeyThatItDoesNotKnow) {
