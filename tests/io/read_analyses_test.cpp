@@ -123,6 +123,26 @@ TEST(AnalysisError, RefusesOutputThatCannotBe) {
   EXPECT_EQ(verdict_adding("output = { times = [2, 1] }\n"), "study.toml:42:24: error: times must rise, got 1 after 2");
 }
 
+TEST(MethodStudyError, WantsALinearModelUnderHarmonicLoads) {
+  const std::string study = edited("\"transient\"", "\"method_study\"");
+  EXPECT_EQ(
+      verdict(study),
+      "study.toml:37:1: error: analysis \"response\": a method study needs a linear model with a closed-form response, "
+      "this one has 1 slider(s)");
+  const std::size_t begin = study.find("[[slider]]"), end = study.find("[[force]]");
+  std::string linear = study;
+  linear.erase(begin, end - begin);  // seven lines
+  EXPECT_EQ(verdict(linear), "accepted");
+  EXPECT_EQ(
+      verdict(edited("amplitude = 20.0\nangular_frequency = 7.0", "expression = \"t\"", linear)),
+      "study.toml:29:1: error: analysis \"response\": a method study needs harmonic loads, whose response has a closed "
+      "form");
+  EXPECT_EQ(verdict(linear + "observe = \"tip\"\n"),
+            "study.toml:35:11: error: observe names \"tip\", which is no coordinate; known: disk, blade");
+  EXPECT_EQ(verdict(linear + "methods = [\"rk4\", \"rk5\"]\n"),
+            "study.toml:35:19: error: unknown method \"rk5\"; did you mean \"rk3\"? `rubato methods` lists them");
+}
+
 TEST(AnalysisError, RefusesAKeyThatItDoesNotKnow) {
   EXPECT_EQ(verdict_adding("initial = \"static\"\n"),
             "study.toml:42:1: error: analysis \"response\" has no key \"initial\"; known: name, type, method, step, "

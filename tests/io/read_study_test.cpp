@@ -76,8 +76,10 @@ TEST(StudyFileError, IsSaidOfAFileOf100MegabytesBeforeItIsRead) {
   const auto path = folder.path() / "large.toml";
   folder.write("large.toml", "");
   std::filesystem::resize_file(path, std::uintmax_t{100} << 20);  // sparse: takes no room on the disk
-  EXPECT_EQ(verdict_on(path),
-            "error: the study \"" + path.string() + "\" has 100 MB, more than the 16 MB that are read");
+  EXPECT_EQ(
+      verdict_on(path),
+      "error: the study \"" + path.string() +
+          "\" has 100 MB, more than the 16 MB that are read; give large models as [matrices] and long loads as tables");
 }
 
 TEST(StudyFileError, IsSaidOfAMissingFileAndOfAFolder) {

@@ -185,6 +185,18 @@ class Schema(unittest.TestCase):
                     self.assertEqual(is_valid(study), expected, "the schema")
                     self.assertEqual(check(target)[0], 0 if expected else 2, "the reader")
 
+    def test_and_the_reader_want_an_analysis(self):
+        study = tomllib.loads(examples[0].read_text())
+        del study["analysis"]
+        self.assertFalse(is_valid(study))
+        with tempfile.TemporaryDirectory() as folder:
+            for file in examples[0].parent.glob("*.mtx"):
+                os.symlink(file, pathlib.Path(folder) / file.name)
+            target = pathlib.Path(folder) / "study.toml"
+            target.write_text(dump(study))
+            message = 'error: the study has no [[analysis]]; add one, such as type = "transient"\n'
+            self.assertEqual(check(target), (2, f"{target}: {message}"))
+
     def test_has_the_keys_that_the_reader_asks_for(self):
         calls = (r'(?:\.|->|\b)(?:text|quantity|name|between|node|has|tables|required|matrix|optional_\w+)'
                  r'(?:<\w+>)?\("(\w+)"')

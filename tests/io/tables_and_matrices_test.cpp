@@ -215,6 +215,8 @@ TEST(MatrixError, RefusesNamesThatDoNotFit) {
       with("names = [\"2\", \"1\"]"),
       "study.toml:4:10: error: [matrices]: the name \"2\" of coordinate 1 is a number, and numbers mean places; choose "
       "another");
+  EXPECT_EQ(with("names = [\"root\", \"tip\"]\nvelocity = { 2 = 1.0, tip = 2.0 }"),
+            "study.toml:5:29: error: velocity names one coordinate twice, as \"2\" and as \"tip\"");
   EXPECT_EQ(with("position = { 3 = 1.0 }"),
             "study.toml:4:18: error: position names \"3\", which is no coordinate; known: 1, 2");
 }

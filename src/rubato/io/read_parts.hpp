@@ -26,8 +26,9 @@ void refuse_binary(const std::string& text, const std::string& file, const std::
 /// A file that a study names, for messages: where it lies, seen from where the study was named.
 std::string file_in(const std::filesystem::path& folder, const std::string& file);
 
-/// The text of a file. Throws InvalidInput at `where` if it cannot be read or is larger than `limit` [bytes].
+/// The text of a file. Throws InvalidInput at `where` if it cannot be read or is larger than `limit` [bytes];
+/// `remedy` says what to do then.
 std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
-                      std::uintmax_t limit, const std::string& what);
+                      std::uintmax_t limit, const std::string& what, const std::string& remedy = "");
 
 }  // namespace rubato::io

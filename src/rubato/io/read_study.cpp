@@ -103,7 +103,7 @@ std::string file_in(const std::filesystem::path& folder, const std::string& file
 }
 
 std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
-                      std::uintmax_t limit, const std::string& what) {
+                      std::uintmax_t limit, const std::string& what, const std::string& remedy) {
   namespace fs = std::filesystem;
   std::error_code fault;
   const fs::file_status status = fs::status(path, fault);
@@ -111,8 +111,8 @@ std::string read_text(const std::filesystem::path& path, const std::string& name
   if (fs::is_directory(status)) throw InvalidInput(where, fmt::format("{} \"{}\" is a folder, not a file", what, name));
   const std::uintmax_t size = fs::is_regular_file(status) ? fs::file_size(path, fault) : 0;
   if (size > limit)
-    throw InvalidInput(where, fmt::format("{} \"{}\" has {} MB, more than the {} MB that are read", what, name,
-                                          size >> 20, limit >> 20));
+    throw InvalidInput(where, fmt::format("{} \"{}\" has {} MB, more than the {} MB that are read{}", what, name,
+                                          size >> 20, limit >> 20, remedy));
   std::ifstream stream(path, std::ios::binary);
   if (!stream)
     throw InvalidInput(where, fmt::format("{} \"{}\" cannot be opened: {}", what, name, std::strerror(errno)));
@@ -154,7 +154,8 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
 
 model::StudyDescription read_study(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const std::string text = read_text(path, name, {}, largest_study, "the study");
+  const std::string text = read_text(path, name, {}, largest_study, "the study",
+                                     "; give large models as [matrices] and long loads as tables");
   return read_study_text(text, name, path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
 }
 

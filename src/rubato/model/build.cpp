@@ -164,10 +164,22 @@ class Builder {
     model_.matrices = std::move(full);
     model_.position = Vector::Zero(size);
     model_.velocity = Vector::Zero(size);
-    for (const auto& [name, value] : matrices.position)
-      model_.position[find(name, value.where, "position names")] = number(value, "position of \"" + name + "\"");
-    for (const auto& [name, value] : matrices.velocity)
-      model_.velocity[find(name, value.where, "velocity names")] = number(value, "velocity of \"" + name + "\"");
+    take_by_name(matrices.position, "position", model_.position);
+    take_by_name(matrices.velocity, "velocity", model_.velocity);
+  }
+
+  /// Writes the values of { name = value, ... } into `out` [n].
+  void take_by_name(const std::vector<std::pair<std::string, Quantity>>& values, const std::string& key,
+                    Vector& out) const {
+    std::unordered_map<Index, std::string> given;
+    for (const auto& [name, value] : values) {
+      const Index place = find(name, value.where, key + " names");
+      const auto [other, is_first] = given.emplace(place, name);
+      if (!is_first)
+        throw InvalidInput(value.where, fmt::format("{} names one coordinate twice, as \"{}\" and as \"{}\"", key,
+                                                    other->second, name));
+      out[place] = number(value, fmt::format("{} of \"{}\"", key, name));
+    }
   }
 
   /// @param role  "slider \"contact1\" joins"
@@ -307,9 +319,7 @@ class Builder {
     motion.direction = Vector::Ones(model_.size());
     if (!description.direction.empty()) {
       motion.direction.setZero();
-      for (const auto& [name, share] : description.direction)
-        motion.direction[find(name, share.where, "[base_motion]: direction names")] =
-            number(share, "[base_motion]: direction of \"" + name + "\"");
+      take_by_name(description.direction, "[base_motion]: direction", motion.direction);
     }
     model_.base_motion = motion;
   }

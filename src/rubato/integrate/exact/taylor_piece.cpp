@@ -92,8 +92,9 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
     if (slider.first != ground) joins(slider.first, i) += 1.0;
     if (slider.second != ground) joins(slider.second, i) -= 1.0;
   }
-  load_pattern_ = mass.solve(pattern_);
-  joins_ = mass.solve(joins);
+  // Eigen touches the first entry of what it solves for, and a model without loads or sliders has none.
+  load_pattern_ = pattern_.cols() > 0 ? Matrix(mass.solve(pattern_)) : pattern_;
+  joins_ = joins.cols() > 0 ? Matrix(mass.solve(joins)) : joins;
   forcing_.resize(n_, degree);
   q_.resize(n_, degree + 1);
   v_.resize(n_, degree + 1);

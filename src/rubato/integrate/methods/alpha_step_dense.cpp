@@ -53,8 +53,11 @@ class DenseAlphaStep final : public AlphaStep {
       if (first_[static_cast<std::size_t>(i)] != ground) joins(first_[static_cast<std::size_t>(i)], i) += 1.0;
       if (second_[static_cast<std::size_t>(i)] != ground) joins(second_[static_cast<std::size_t>(i)], i) -= 1.0;
     }
-    on_load_ = factor.solve(pattern);
-    on_slider_ = factor.solve(joins);
+    // Eigen touches the first entry of what it solves for, and a model without loads or sliders has none.
+    on_load_.resize(n_, terms_);
+    on_slider_.resize(n_, m_);
+    if (terms_ > 0) on_load_ = factor.solve(pattern);
+    if (m_ > 0) on_slider_ = factor.solve(joins);
     contact_.reset(p_.beta * h * h * end * joins.transpose() * Matrix(on_slider_), system_.sliders());
     return true;
   }
