@@ -32,8 +32,8 @@ double curvature(std::span<const double> c, double s) {
 // Newton inside a bracket, bisection where it leaves it. `f(s)` gives a value and its derivative; the value is not
 // negative at low, and negative at high.
 template <class F>
-double refine(const F& f, double low, double high) {
-  double s = 0.5 * (low + high);
+double refine(const F& f, double low, double high, double s) {
+  if (!(s > low && s < high)) s = 0.5 * (low + high);
   for (int i = 0; i < 100; ++i) {
     const Values v = f(s);
     (v.value < 0.0 ? high : low) = s;
@@ -57,13 +57,15 @@ class Margin {
 
   /// Its zero in (a, high], where it is negative at high and, but for a = 0, not at a.
   double zero(double a, double high) const {
+    const double at_low = a == 0.0 ? c_[0] : evaluate(terms(), a).value, at_high = evaluate(terms(), high).value;
     double low = a;
     if (a == 0.0 && !(c_[0] > 0.0)) {  // it rises from zero first: a point where it is positive is not the start
       low = 0.5 * high;
       while (low > 1e-14 * high && evaluate(terms(), low).value < 0.0) low *= 0.5;
       if (evaluate(terms(), low).value < 0.0) return low;
     }
-    return refine([this](double s) { return evaluate(terms(), s); }, low, high);
+    const double secant = low == a ? a + (high - a) * at_low / (at_low - at_high) : 0.5 * (low + high);
+    return refine([this](double s) { return evaluate(terms(), s); }, low, high, secant);
   }
 
  private:
@@ -72,8 +74,13 @@ class Margin {
 };
 
 // Where the slope of p, of the sign -`sign` at high, vanishes.
-double extremum(std::span<const double> c, double sign, double low, double high) {
-  return refine([&](double s) { return Values{sign * evaluate(c, s).slope, sign * curvature(c, s)}; }, low, high);
+double extremum(std::span<const double> c, double sign, double low, double slope_low, double high, double slope_high) {
+  const double secant = low + (high - low) * slope_low / (slope_low - slope_high);
+  return refine(
+      [&](double s) {
+        return Values{sign * evaluate(c, s).slope, sign * curvature(c, s)};
+      },
+      low, high, secant);
 }
 
 }  // namespace
@@ -115,7 +122,7 @@ double first_exit(std::span<const double> c, double lower, double upper, double 
       if (sign * (edge - value[i]) < 0.0) {
         high = at[i];
       } else if (sign * slope_a > 0.0 && sign * slope[i] < 0.0) {
-        const double peak = extremum(c, sign, a, at[i]);
+        const double peak = extremum(c, sign, a, slope_a, at[i], slope[i]);
         if (sign * (edge - polynomial(c, peak)) < 0.0) high = peak;
       }
       if (high > 0.0) return Margin(c, edge, sign).zero(a, high);
