@@ -107,6 +107,29 @@ TEST(ExactFlow, MeetsTheCheckpointsOfTheUnderPlatformDamper) {
   }
 }
 
+// Reference page, section 4: steady amplitudes at 10 rad/s, 12 digits. The slowest transient has died by exp(-0.06 *
+// 400). The turning point of the cubic between two of 2048 samples a period leaves h^4/384 of the fourth derivative:
+// 1e-12.
+TEST(ExactFlow, MeetsTheSteadyAmplitudesOfTheUnderPlatformDamper) {
+  const double period = 2.0 * std::numbers::pi / 10.0, start = 640.0 * period;
+  const Trace trace = run(testing::damper_model(), start + 1.01 * period, evenly(start, start + 1.01 * period, 2068));
+  const auto half_peak_to_peak = [&](Index i) {
+    double high = -1e9, low = 1e9;
+    for (std::size_t k = 1; k < trace.samples.size(); ++k) {
+      const system::State &a = trace.samples[k - 1], &b = trace.samples[k];
+      if (a.v[i] * b.v[i] > 0.0) continue;
+      const double s = a.v[i] / (a.v[i] - b.v[i]), h = b.t - a.t;
+      const double q =
+          a.q[i] + (b.q[i] - a.q[i]) * s * s * (3 - 2 * s) + h * s * (1 - s) * (a.v[i] * (1 - s) - b.v[i] * s);
+      high = std::max(high, q);
+      low = std::min(low, q);
+    }
+    return 0.5 * (high - low);
+  };
+  EXPECT_NEAR(half_peak_to_peak(0), 0.0313777807495, 1e-11);
+  EXPECT_NEAR(half_peak_to_peak(1), 0.53295660136, 1e-11);
+}
+
 // Undamped at resonance: x'' + x = cos t from rest is x = t sin t / 2, a repeated root of the structure and its load.
 TEST(ExactFlow, FollowsAnUndampedResonance) {
   const Trace trace = run(testing::single_mass(0.0, 1.0, 0.0), 40.0, {10.0, 40.0});
