@@ -256,17 +256,12 @@ class MethodStudy {
       labels.push_back(method.name);
       columns.push_back(std::move(comparison.values));
     }
-    const auto rows = context_.sink.open(
-        {name_,
-         "response",
-         "time",
-         {scalar("time", "s", "time"), {"position", "m", "displacement of " + plan_.observed.label, "method", labels}},
-         {}});
+    const auto rows = context_.sink.open(response_layout("response", labels, {}));
     std::vector<double> row;
     for (long j = 0; j <= count; ++j) {
       row = {static_cast<double>(j) * plan_.step, exact_[static_cast<std::size_t>(4 * j)]};
       for (const auto& column : columns) row.push_back(j == 0 ? exact_[0] : column[static_cast<std::size_t>(j - 1)]);
-      rows->append(row);
+      append_with_differences(*rows, row);
     }
     return true;
   }
@@ -283,15 +278,11 @@ class MethodStudy {
     const double end = std::min(60.0 * step, plan_.duration);
     (void)march(euler, system_, step, end, comparison);
     const auto rows = context_.sink.open(
-        {name_,
-         "unstable",
-         "time",
-         {scalar("time", "s", "time"),
-          {"position", "m", "displacement of " + plan_.observed.label, "method", {"exact", "explicit_euler"}}},
-         {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}});
+        response_layout("unstable", {"exact", "explicit_euler"},
+                        {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}));
     for (std::size_t j = 0; j < comparison.values.size() && j + 1 < exact.size(); ++j) {
-      const double row[] = {static_cast<double>(j + 1) * step, exact[j + 1], comparison.values[j]};
-      rows->append(row);
+      std::vector<double> row{static_cast<double>(j + 1) * step, exact[j + 1], comparison.values[j]};
+      append_with_differences(*rows, row);
     }
     return !context_.stop.load();
   }
@@ -379,6 +370,24 @@ class MethodStudy {
   double total() const { return total_; }
 
  private:
+  results::TableLayout response_layout(const std::string& table, const std::vector<std::string>& labels,
+                                       const std::vector<std::pair<std::string, std::string>>& attributes) const {
+    return {name_,
+            table,
+            "time",
+            {scalar("time", "s", "time"),
+             {"position", "m", "displacement of " + plan_.observed.label, "method", labels},
+             {"difference", "m", "difference from the exact displacement", "method", labels}},
+            attributes};
+  }
+
+  /// @param row  time and positions, the exact one first; the differences are added to it
+  static void append_with_differences(results::RowWriter& rows, std::vector<double>& row) {
+    const std::size_t end = row.size();
+    for (std::size_t i = 1; i < end; ++i) row.push_back(row[i] - row[1]);
+    rows.append(row);
+  }
+
   void advance(double steps) { context_.progress.advance(done_ += steps); }
 
   const std::string& name_;
