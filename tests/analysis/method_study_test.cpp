@@ -136,7 +136,11 @@ TEST(MethodStudy, KnowsTheResponseAtResonanceWithoutDamping) {
   const auto& table = result.sink.tables.at("study.response");
   const std::size_t exact = table.column("position", "exact");
   ASSERT_EQ(table.rows.size(), 1001u);
-  for (const auto& row : table.rows) EXPECT_NEAR(row[exact], 0.5 * row[0] * std::sin(row[0]), 1e-12) << row[0];
+  const std::size_t rk4 = table.column("position", "rk4"), difference = table.column("difference", "rk4");
+  for (const auto& row : table.rows) {
+    EXPECT_NEAR(row[exact], 0.5 * row[0] * std::sin(row[0]), 1e-12) << row[0];
+    EXPECT_EQ(row[difference], row[rk4] - row[exact]);
+  }
 }
 
 TEST(MethodStudy, LowersTheErrorOfRungeKutta4ToRoundOff) {
@@ -165,7 +169,7 @@ TEST(MethodStudy, ShowsExplicitEulerBeyondItsLimit) {
   const auto& table = result.sink.tables.at("study.unstable");
   const std::size_t euler = table.column("position", "explicit_euler");
   ASSERT_GT(table.rows.size(), 40u);
-  EXPECT_EQ(table.rows[0], (std::vector<double>{0.0, 0.0, 0.0}));
+  EXPECT_EQ(table.rows[0], (std::vector<double>{0.0, 0.0, 0.0, 0.0}));
   EXPECT_NEAR(table.rows[1][0], 1.1, 1e-6);
   double early = 0.0, late = 0.0;
   for (const auto& row : table.rows) {

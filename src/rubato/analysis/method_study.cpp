@@ -9,9 +9,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace rubato::analysis {
 namespace {
@@ -87,7 +89,7 @@ class MethodStudy {
     constexpr long most_rows = 3000;
     const long count = std::min(integrate::count_steps(plan_.duration, plan_.step).full, most_rows);
     const double end = static_cast<double>(count) * plan_.step;
-    std::vector<std::string> labels{"exact"};
+    std::vector<std::string> labels;
     std::vector<std::vector<double>> columns;
     for (const Method& method : plan_.methods) {
       Comparison comparison(plan_, exact_, 4, context_.stop);
@@ -96,18 +98,9 @@ class MethodStudy {
       labels.push_back(method.name);
       columns.push_back(std::move(comparison.values));
     }
-    const auto rows = context_.sink.open(
-        {name_,
-         "response",
-         "time",
-         {scalar("time", "s", "time"), {"position", "m", "displacement of " + plan_.observed.label, "method", labels}},
-         {}});
-    std::vector<double> row;
-    for (long j = 0; j <= count; ++j) {
-      row = {static_cast<double>(j) * plan_.step, exact_[static_cast<std::size_t>(4 * j)]};
-      for (const auto& column : columns) row.push_back(j == 0 ? exact_[0] : column[static_cast<std::size_t>(j - 1)]);
-      rows->append(row);
-    }
+    std::vector<double> exact;
+    for (long j = 0; j <= count; ++j) exact.push_back(exact_[static_cast<std::size_t>(4 * j)]);
+    write_displacements("response", {}, plan_.step, labels, exact, columns);
     return true;
   }
 
@@ -122,18 +115,9 @@ class MethodStudy {
     comparison.keep_values = true;
     const double end = std::min(60.0 * step, plan_.duration);
     (void)march(euler, system_, step, end, comparison);
-    const auto rows = context_.sink.open(
-        {name_,
-         "unstable",
-         "time",
-         {scalar("time", "s", "time"),
-          {"position", "m", "displacement of " + plan_.observed.label, "method", {"exact", "explicit_euler"}}},
-         {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}});
-    rows->append(std::array{0.0, exact[0], exact[0]});
-    for (std::size_t j = 0; j < comparison.values.size() && j + 1 < exact.size(); ++j) {
-      const double row[] = {static_cast<double>(j + 1) * step, exact[j + 1], comparison.values[j]};
-      rows->append(row);
-    }
+    write_displacements("unstable",
+                        {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}, step,
+                        {euler.name}, exact, {comparison.values});
     return !context_.stop.load();
   }
 
@@ -231,6 +215,33 @@ class MethodStudy {
   double total() const { return total_; }
 
  private:
+  /// Methods beside the exact displacement, and what they miss it by: subtracted here, since after rounding to the
+  /// digits of a figure nothing would be left of it. Row j is at j steps, columns[i][j - 1] the displacement of method
+  /// i.
+  void write_displacements(const std::string& table, std::vector<std::pair<std::string, std::string>> attributes,
+                           double step, const std::vector<std::string>& names, const std::vector<double>& exact,
+                           const std::vector<std::vector<double>>& columns) {
+    std::vector<std::string> labels{"exact"};
+    labels.insert(labels.end(), names.begin(), names.end());
+    const auto rows =
+        context_.sink.open({name_,
+                            table,
+                            "time",
+                            {scalar("time", "s", "time"),
+                             {"position", "m", "displacement of " + plan_.observed.label, "method", labels},
+                             {"difference", "m", "displacement less the exact one", "compared_method", names}},
+                            std::move(attributes)});
+    std::size_t count = exact.size();
+    for (const auto& column : columns) count = std::min(count, column.size() + 1);
+    std::vector<double> row;
+    for (std::size_t j = 0; j < count; ++j) {
+      row = {static_cast<double>(j) * step, exact[j]};
+      for (const auto& column : columns) row.push_back(j == 0 ? exact[0] : column[j - 1]);
+      for (std::size_t i = 0; i < columns.size(); ++i) row.push_back(row[2 + i] - exact[j]);
+      rows->append(row);
+    }
+  }
+
   void advance(double steps) { context_.progress.advance(done_ += steps); }
 
   const std::string& name_;
