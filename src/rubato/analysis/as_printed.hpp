@@ -13,7 +13,8 @@ struct PrintedRow {
   std::string method;      ///< the method of the catalogue that it means
   std::string convention;  ///< how the printed figures arise, where it is not the method as it should be
   bool in_percent = false;
-  double first_step_error = 0.0, indicator = 0.0;  ///< in the unit of the table
+  double first_step_error = 0.0, indicator = 0.0;                  ///< as printed, in the unit of the table
+  double correct_first_step_error = 0.0, correct_indicator = 0.0;  ///< of `method`, by the same measures and unit
 };
 
 /// Computes Tables 2.2 to 2.4 of the thesis "Calcolo della risposta dinamica non lineare ..." (Politecnico di Torino,
@@ -25,7 +26,12 @@ struct PrintedRow {
 /// 4: the load of the half step is that at t - h/2 (at t = 0 that at 0). Newmark: the printed beta, which for some rows
 /// is Zienkiewicz's 2 beta; "accelerazione lineare II" with 1/3. These are no methods of the catalogue.
 ///
+/// Beside them: the same two measures of the method that the row is named after.
+///
 /// Throws InvalidInput unless the system is one underdamped coordinate from rest under one harmonic load.
 std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system, double step);
+
+/// Throws what tables_as_printed throws, and computes nothing.
+void require_model_as_printed(const system::LocallyNonlinear& system);
 
 }  // namespace rubato::analysis

@@ -1,9 +1,8 @@
 #include <rubato/analysis/as_printed.hpp>
 #include <rubato/analysis/method_study.hpp>
-#include <rubato/analysis/transient_plan.hpp>
+#include <rubato/analysis/method_study_comparison.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/stability.hpp>
 
 #include <fmt/format.h>
@@ -11,8 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace rubato::analysis {
 namespace {
@@ -20,166 +21,6 @@ namespace {
 using integrate::Method;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double most_ladder_steps = 1e6;  // a run of the finest step takes a tenth of a second
-
-struct Plan {
-  std::vector<Method> methods;
-  std::vector<int> orders;
-  double step = 0.0, duration = 0.0;
-  std::vector<double> ladder;  ///< falling [s]
-  Observed observed;
-  std::vector<std::string> left_out;
-
-  std::vector<std::string> names() const {
-    std::vector<std::string> list;
-    for (const Method& method : methods) list.push_back(method.name);
-    return list;
-  }
-};
-
-double positive(const model::Quantity& quantity, const numerics::Parameters& parameters, const std::string& what) {
-  const double value = model::evaluate(quantity, parameters, what);
-  if (!(value > 0.0)) throw InvalidInput(quantity.where, fmt::format("{} must be positive, got {}", what, value));
-  return value;
-}
-
-void take_methods(Plan& plan, const std::string& title, const model::MethodStudyDescription& study,
-                  const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
-  if (!study.methods.empty()) {
-    for (const auto& description : study.methods) {
-      Method method = method_of(description, parameters);
-      if (std::holds_alternative<integrate::Exact>(method.formula))
-        throw InvalidInput(description.where, title +
-                                                  "the method exact takes no step; it is what the others are compared "
-                                                  "with");
-      const double limit = integrate::stability_of(method, system).step;
-      if (plan.step > limit)
-        throw InvalidInput(description.where,
-                           fmt::format("{}{} is stable up to the step {:.6g} s on this model, the study "
-                                       "takes {} s",
-                                       title, method.name, limit, plan.step));
-      plan.methods.push_back(std::move(method));
-      plan.orders.push_back(integrate::find_method(description.name).order);
-    }
-    return;
-  }
-  for (const auto& info : integrate::catalogue()) {
-    const bool needs_values = std::any_of(info.parameters.begin(), info.parameters.end(),
-                                          [](const auto& parameter) { return std::isnan(parameter.default_value); });
-    if (needs_values || info.name == "exact" || (info.name == "exponential" && system.size() > 500)) continue;
-    Method method = integrate::make_method(info.name);
-    if (plan.step > integrate::stability_of(method, system).step) {
-      plan.left_out.push_back(info.name);
-      continue;
-    }
-    plan.methods.push_back(std::move(method));
-    plan.orders.push_back(info.order);
-  }
-}
-
-Plan make_plan(const std::string& name, const Location& where, const model::MethodStudyDescription& study,
-               const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
-  const std::string title = "analysis \"" + name + "\": ";
-  if (system.slider_count() > 0)
-    throw InvalidInput(where,
-                       fmt::format("{}a method study needs a linear model with a closed-form response, this one has "
-                                   "{} slider(s)",
-                                   title, system.slider_count()));
-  if (!system.loads().are_harmonic())
-    throw InvalidInput(where, title + "a method study needs harmonic loads, whose response has a closed form");
-  try {
-    const integrate::ExactFlow flow(system);
-    if (study.as_printed) (void)tables_as_printed(system, 0.01);
-  } catch (const InvalidInput& fault) {
-    throw InvalidInput(where, title + fault.message());
-  }
-  Plan plan;
-  plan.step = positive(study.step, parameters, title + "step");
-  plan.duration = positive(study.duration, parameters, title + "duration");
-  const double count = plan.duration / plan.step;
-  if (!(count >= 1.0 && count <= most_ladder_steps))
-    throw InvalidInput(study.step.where, fmt::format("{}{} steps; take from 1 to 1e6", title, count));
-  if (std::abs(count - std::round(count)) > 1e-9 * count)
-    throw InvalidInput(study.step.where, fmt::format("{}the duration {} s must be a multiple of the step {} s", title,
-                                                     plan.duration, plan.step));
-  plan.observed =
-      study.observe ? observed_of(*study.observe, system) : Observed{system.coordinates().front(), 0, ground};
-  take_methods(plan, title, study, system, parameters);
-  for (const auto& quantity : study.ladder) {
-    const double h = positive(quantity, parameters, title + "ladder");
-    if (h > plan.duration || plan.duration / h > 1e7)
-      throw InvalidInput(quantity.where,
-                         fmt::format("{}ladder: {} s makes {} steps; take from 1 to 1e7", title, h, plan.duration / h));
-    plan.ladder.push_back(h);
-  }
-  std::sort(plan.ladder.begin(), plan.ladder.end(), std::greater<>());
-  if (plan.ladder.empty())
-    for (int k = 5; k >= -8; --k) {
-      const double h = plan.step * std::pow(2.0, k);
-      if (plan.duration / h >= 8.0 && plan.duration / h <= most_ladder_steps) plan.ladder.push_back(h);
-    }
-  return plan;
-}
-
-/// The exact displacement at the multiples of a step, by the event-driven flow (Taylor pieces, exact to round-off).
-std::vector<double> exact_response(const Plan& plan, const system::LocallyNonlinear& system, double step) {
-  struct Sampler final : integrate::ExactVisitor {
-    explicit Sampler(const Observed& o) : observed(o) {}
-    bool sample(const system::State& state, const integrate::ExactWork&) override {
-      values.push_back(observed.of(state.q));
-      return true;
-    }
-    bool transition(const system::State&, const integrate::Transition&, const integrate::ExactWork&) override {
-      return true;
-    }
-    const Observed& observed;
-    std::vector<double> values;
-  } sampler(plan.observed);
-  const integrate::StepCount count = integrate::count_steps(plan.duration, step);
-  std::vector<double> times;
-  for (long i = 0; i <= count.full; ++i) times.push_back(std::min(static_cast<double>(i) * step, plan.duration));
-  integrate::ExactFlow flow(system);
-  system::State state = system.start();
-  flow.advance(state, plan.duration, times, sampler);
-  return sampler.values;
-}
-
-/// Compares every step of a march with the exact displacement.
-class Comparison final : public integrate::Observer {
- public:
-  Comparison(const Plan& plan, const std::vector<double>& exact, long stride, const std::atomic<bool>& stop)
-      : plan_(plan), exact_(exact), stride_(stride), stop_(stop) {}
-
-  bool accepted(const system::State&, const system::State& after) override {
-    ++steps_;
-    const double x = plan_.observed.of(after.q);
-    if (keep_values) values.push_back(x);
-    const bool on_grid = stride_ > 0 ? true : steps_ % -stride_ == 0;
-    const auto place = static_cast<std::size_t>(stride_ > 0 ? steps_ * stride_ : steps_ / -stride_);
-    if (on_grid && place < exact_.size()) {
-      const double error = std::abs(x - exact_[place]);
-      if (steps_ == 1) first_ = error / std::abs(exact_[place]);
-      largest_ = std::max(largest_, error);
-      sum_ += error;
-      ++compared_;
-    }
-    return !stop_.load(std::memory_order_relaxed);
-  }
-  double first() const { return first_; }
-  double largest() const { return largest_; }
-  double mean() const { return sum_ / static_cast<double>(std::max(compared_, 1L)); }
-
-  bool keep_values = false;
-  std::vector<double> values;
-
- private:
-  const Plan& plan_;
-  const std::vector<double>& exact_;
-  long stride_;  ///< samples a step; negative: steps a sample
-  const std::atomic<bool>& stop_;
-  long steps_ = 0, compared_ = 0;
-  double first_ = missing, largest_ = 0.0, sum_ = 0.0;
-};
 
 bool march(const Method& method, const system::LocallyNonlinear& system, double step, double end,
            Comparison& comparison) {
@@ -195,11 +36,12 @@ results::Block scalar(const std::string& variable, const std::string& unit, cons
 /// Writes the tables one after another; each returns false if it was interrupted.
 class MethodStudy {
  public:
-  MethodStudy(const std::string& name, const Plan& plan, const system::LocallyNonlinear& system, RunContext& context)
+  MethodStudy(const std::string& name, const MethodStudyPlan& plan, const system::LocallyNonlinear& system,
+              RunContext& context)
       : name_(name), plan_(plan), system_(system), context_(context) {
-    exact_ = exact_response(plan, system, 0.25 * plan.step);
-    for (const double x : exact_) size_ = std::max(size_, std::abs(x));
-    if (!(size_ > 0.0)) size_ = 1.0;
+    ExactResponse response = exact_response(plan, system, 0.25 * plan.step);
+    exact_ = std::move(response.values);
+    size_ = response.largest > 0.0 ? response.largest : 1.0;
     const double methods = static_cast<double>(plan.methods.size());
     for (const double h : plan.ladder) total_ += methods * plan.duration / h;
     total_ += methods * 7.0 * plan.duration / plan.step;
@@ -247,7 +89,7 @@ class MethodStudy {
     constexpr long most_rows = 3000;
     const long count = std::min(integrate::count_steps(plan_.duration, plan_.step).full, most_rows);
     const double end = static_cast<double>(count) * plan_.step;
-    std::vector<std::string> labels{"exact"};
+    std::vector<std::string> labels;
     std::vector<std::vector<double>> columns;
     for (const Method& method : plan_.methods) {
       Comparison comparison(plan_, exact_, 4, context_.stop);
@@ -256,13 +98,9 @@ class MethodStudy {
       labels.push_back(method.name);
       columns.push_back(std::move(comparison.values));
     }
-    const auto rows = context_.sink.open(response_layout("response", labels, {}));
-    std::vector<double> row;
-    for (long j = 0; j <= count; ++j) {
-      row = {static_cast<double>(j) * plan_.step, exact_[static_cast<std::size_t>(4 * j)]};
-      for (const auto& column : columns) row.push_back(j == 0 ? exact_[0] : column[static_cast<std::size_t>(j - 1)]);
-      append_with_differences(*rows, row);
-    }
+    std::vector<double> exact;
+    for (long j = 0; j <= count; ++j) exact.push_back(exact_[static_cast<std::size_t>(4 * j)]);
+    write_displacements("response", {}, plan_.step, labels, exact, columns);
     return true;
   }
 
@@ -272,18 +110,14 @@ class MethodStudy {
     const double limit = integrate::stability_of(euler, system_).step;
     if (!(limit > 0.0) || std::isinf(limit)) return true;
     const double step = 1.1 * limit;
-    const auto exact = exact_response(plan_, system_, step);
+    const auto exact = exact_response(plan_, system_, step).values;
     Comparison comparison(plan_, exact, 1, context_.stop);
     comparison.keep_values = true;
     const double end = std::min(60.0 * step, plan_.duration);
     (void)march(euler, system_, step, end, comparison);
-    const auto rows = context_.sink.open(
-        response_layout("unstable", {"exact", "explicit_euler"},
-                        {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}));
-    for (std::size_t j = 0; j < comparison.values.size() && j + 1 < exact.size(); ++j) {
-      std::vector<double> row{static_cast<double>(j + 1) * step, exact[j + 1], comparison.values[j]};
-      append_with_differences(*rows, row);
-    }
+    write_displacements("unstable",
+                        {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}, step,
+                        {euler.name}, exact, {comparison.values});
     return !context_.stop.load();
   }
 
@@ -292,7 +126,9 @@ class MethodStudy {
         {name_,
          "ladder",
          "step",
-         {scalar("step", "s", "step"), {"max_error", "1", "largest |x - x(t)| / largest |x|", "method", plan_.names()}},
+         {scalar("step", "s", "step"),
+          {"max_error", "1", "largest |x - x(t)| / largest |x|, at 2000 times or more where there are as many steps",
+           "method", plan_.names()}},
          {}});
     std::vector<double> limits;
     for (const Method& method : plan_.methods) limits.push_back(integrate::stability_of(method, system_).step);
@@ -300,7 +136,7 @@ class MethodStudy {
       // Fine runs are compared at a thousand times or more, not at every step.
       const long count = integrate::count_steps(plan_.duration, h).full;
       const long thinned = std::max(1L, count / 2000);
-      const auto exact = exact_response(plan_, system_, h * static_cast<double>(thinned));
+      const auto exact = exact_response(plan_, system_, h * static_cast<double>(thinned)).values;
       std::vector<double> row{h};
       for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
         Comparison comparison(plan_, exact, -thinned, context_.stop);
@@ -331,7 +167,7 @@ class MethodStudy {
       std::vector<double> row{x}, elongation, damping;
       for (const Method& method : plan_.methods) {
         const integrate::ModeResponse mode = integrate::mode_response(method, x);
-        row.push_back(mode.spectral_radius);
+        row.push_back(std::isfinite(mode.spectral_radius) ? mode.spectral_radius : missing);
         elongation.push_back(mode.period_elongation.value_or(missing));
         damping.push_back(mode.numerical_damping.value_or(missing));
       }
@@ -352,17 +188,26 @@ class MethodStudy {
       method.categories.push_back(row.title);
       convention.categories.push_back(row.convention.empty() ? "as it should be" : row.convention);
     }
-    const auto rows =
-        context_.sink.open({name_,
-                            "as_printed",
-                            "row",
-                            {method, scalar("first_step_error", "1", "error at the first step, as printed"),
-                             scalar("indicator", "1", "indicator, as printed"), unit, convention},
-                            {}});
+    const auto rows = context_.sink.open(
+        {name_,
+         "as_printed",
+         "row",
+         {method, scalar("first_step_error", "1", "error at the first step, as printed"),
+          scalar("indicator", "1", "mean of the relative errors, as printed"),
+          scalar("correct_first_step_error", "1", "error at the first step of the method meant"),
+          scalar("correct_indicator", "1", "mean of the relative errors of the method meant"), unit, convention},
+         {}});
     for (std::size_t i = 0; i < table.size(); ++i) {
       const double index = static_cast<double>(i);
-      const double row[] = {index, table[i].first_step_error, table[i].indicator, table[i].in_percent ? 1.0 : 0.0,
-                            index};
+      double row[] = {index,
+                      table[i].first_step_error,
+                      table[i].indicator,
+                      table[i].correct_first_step_error,
+                      table[i].correct_indicator,
+                      table[i].in_percent ? 1.0 : 0.0,
+                      index};
+      for (double& value : row)
+        if (!std::isfinite(value)) value = missing;  // explicit Euler beyond its limit
       rows->append(row);
     }
   }
@@ -370,28 +215,37 @@ class MethodStudy {
   double total() const { return total_; }
 
  private:
-  results::TableLayout response_layout(const std::string& table, const std::vector<std::string>& labels,
-                                       const std::vector<std::pair<std::string, std::string>>& attributes) const {
-    return {name_,
-            table,
-            "time",
-            {scalar("time", "s", "time"),
-             {"position", "m", "displacement of " + plan_.observed.label, "method", labels},
-             {"difference", "m", "difference from the exact displacement", "method", labels}},
-            attributes};
-  }
-
-  /// @param row  time and positions, the exact one first; the differences are added to it
-  static void append_with_differences(results::RowWriter& rows, std::vector<double>& row) {
-    const std::size_t end = row.size();
-    for (std::size_t i = 1; i < end; ++i) row.push_back(row[i] - row[1]);
-    rows.append(row);
+  /// Methods beside the exact displacement, and what they miss it by: subtracted here, since after rounding to the
+  /// digits of a figure nothing would be left of it. Row j is at j steps, columns[i][j - 1] the displacement of method
+  /// i.
+  void write_displacements(const std::string& table, std::vector<std::pair<std::string, std::string>> attributes,
+                           double step, const std::vector<std::string>& names, const std::vector<double>& exact,
+                           const std::vector<std::vector<double>>& columns) {
+    std::vector<std::string> labels{"exact"};
+    labels.insert(labels.end(), names.begin(), names.end());
+    const auto rows =
+        context_.sink.open({name_,
+                            table,
+                            "time",
+                            {scalar("time", "s", "time"),
+                             {"position", "m", "displacement of " + plan_.observed.label, "method", labels},
+                             {"difference", "m", "displacement less the exact one", "compared_method", names}},
+                            std::move(attributes)});
+    std::size_t count = exact.size();
+    for (const auto& column : columns) count = std::min(count, column.size() + 1);
+    std::vector<double> row;
+    for (std::size_t j = 0; j < count; ++j) {
+      row = {static_cast<double>(j) * step, exact[j]};
+      for (const auto& column : columns) row.push_back(j == 0 ? exact[0] : column[j - 1]);
+      for (std::size_t i = 0; i < columns.size(); ++i) row.push_back(row[2 + i] - exact[j]);
+      rows->append(row);
+    }
   }
 
   void advance(double steps) { context_.progress.advance(done_ += steps); }
 
   const std::string& name_;
-  const Plan& plan_;
+  const MethodStudyPlan& plan_;
   const system::LocallyNonlinear& system_;
   RunContext& context_;
   std::vector<double> exact_;  ///< at the multiples of a quarter of the step
@@ -402,13 +256,13 @@ class MethodStudy {
 
 void check_method_study(const std::string& name, const Location& where, const model::MethodStudyDescription& study,
                         const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
-  (void)make_plan(name, where, study, system, parameters);
+  (void)plan_method_study(name, where, study, system, parameters);
 }
 
 RunReport run_method_study(const std::string& name, const model::MethodStudyDescription& study,
                            const system::LocallyNonlinear& system, const numerics::Parameters& parameters,
                            RunContext& context) {
-  const Plan plan = make_plan(name, {}, study, system, parameters);
+  const MethodStudyPlan plan = plan_method_study(name, {}, study, system, parameters);
   MethodStudy tables(name, plan, system, context);
   context.progress.begin(name, tables.total(), "steps");
   const bool finished =

@@ -82,7 +82,9 @@ function response_figures(whole) {
   const variable = variable_of(table, "position") ?? plotted_variables(table)[0];
   const named = variable_of(table, "exact");
   const series = series_of(table, variable);
-  const differences = variable_of(table, "difference") ? series_of(table, variable_of(table, "difference")) : null;
+  // The numbers of a page have seven digits: a small difference is not left of two of them, and has a column of its own.
+  const differences = variable_of(table, "difference");
+  const difference_of = (name) => differences && series_of(table, differences).find((line) => line.name === name)?.y;
   const exact = named ? table.overview[named.index][0] : series.find((line) => line.name === "exact")?.y;
   return series.filter((line) => line.name !== "exact").map((line) => make_figure({
     caption: `${line.name}: response beside the exact one, and their difference below. ${window_text(whole)}`,
@@ -96,9 +98,7 @@ function response_figures(whole) {
                    line: {color: "#e69f00", width: 1.4, dash: "dash"}});
       const layout = {xaxis: axis(axis_label(line.x_variable), exact ? {anchor: "y2", mirror: "all"} : {}), yaxis: axis(axis_label(variable))};
       if (exact) {
-        // The page holds seven digits: a difference of its values would show their rounding.
-        const difference = differences?.find((other) => other.name === line.name)?.y ??
-          line.y.map((value, row) => (value === null || exact[row] === null ? null : value - exact[row]));
+        const difference = difference_of(line.name) ?? line.y.map((value, row) => (value === null || exact[row] === null ? null : value - exact[row]));
         traces.push({type: "scatter", mode: "lines", x: line.x, y: difference, yaxis: "y2", name: "Difference",
                      line: {color: "#0072b2", width: 1.3}});
         layout.yaxis.domain = [0.46, 1];
