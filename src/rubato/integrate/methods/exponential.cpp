@@ -91,7 +91,8 @@ class ExponentialStepper final : public Stepper {
       if (slider.first != ground) inputs(slider.first, loads + i) += 1.0;
       if (slider.second != ground) inputs(slider.second, loads + i) -= 1.0;
     }
-    const Matrix driven = h * h * mass.solve(inputs);
+    // Eigen's solve reads the first of no columns.
+    const Matrix driven = inputs.cols() > 0 ? Matrix(h * h * mass.solve(inputs)) : Matrix(n_, 0);
     for (Index i = 0; i < loads + m_; ++i) {
       const Index value = 2 * n_ + 2 * i;
       exponent.block(n_, value, n_, 1) = driven.col(i);
