@@ -5,6 +5,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -41,11 +43,25 @@ void prepare_output_folder(const std::filesystem::path& folder, double expected_
   }
   fs::remove(probe, fault);
   const auto space = fs::space(folder, fault);
-  if (!fault && expected_bytes > static_cast<double>(space.available))
-    throw OutputError(
-        fmt::format("{}: the results will take about {:.3g} GB and {:.3g} GB are free; write fewer rows "
-                    "(output = {{ interval = ... }}, observe = [...]) or elsewhere (-o DIR)",
-                    folder.string(), expected_bytes / 1e9, static_cast<double>(space.available) / 1e9));
+  if (!fault && expected_bytes + disk_reserve > static_cast<double>(space.available))
+    throw OutputError(fmt::format(
+        "{}: the results will take about {:.3g} GB and {:.3g} GB are free; write fewer rows "
+        "(output = {{ interval = ... }}, observe = [...]) or elsewhere (-o DIR)",
+        folder.string(), (expected_bytes + disk_reserve) / 1e9, static_cast<double>(space.available) / 1e9));
+}
+
+bool has_disk_space(const std::filesystem::path& file, double growth) {
+  std::error_code fault;
+  const auto space = std::filesystem::space(file.has_parent_path() ? file.parent_path() : ".", fault);
+  return fault || static_cast<double>(space.available) >= growth + disk_reserve;
+}
+
+bool may_grow(const std::filesystem::path& file, double growth) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return true;
+  std::error_code fault;
+  const auto size = std::filesystem::file_size(file, fault);
+  return fault || static_cast<double>(size) + growth <= static_cast<double>(limit.rlim_cur);
 }
 
 }  // namespace rubato::io

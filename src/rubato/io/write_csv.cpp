@@ -1,11 +1,14 @@
 #include <rubato/core/error.hpp>
+#include <rubato/io/flush_timer.hpp>
 #include <rubato/io/output_folder.hpp>
 #include <rubato/io/write_csv.hpp>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -30,15 +33,19 @@ class CsvWriter final : public results::RowWriter {
   CsvWriter(std::filesystem::path path, const results::TableLayout& layout) : path_(std::move(path)) {
     order_columns(layout);
     errno = 0;
-    file_ = std::fopen(path_.c_str(), "wb");
-    if (!file_) throw OutputError(write_failure(path_, errno));
+    file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file_ < 0) throw OutputError(write_failure(path_, errno));
+    buffer_.reserve(buffer_size + (1u << 12));
     buffer_ = header_ + "\n";
     header_.clear();
   }
   ~CsvWriter() override {
-    if (!file_) return;
-    if (!failed_) std::fwrite(buffer_.data(), 1, buffer_.size(), file_);
-    std::fclose(file_);
+    try {
+      write();
+    } catch (const OutputError&) {
+      // A destructor cannot say so; whoever needs to know has flushed.
+    }
+    ::close(file_);
   }
 
   void append(std::span<const double> row) override {
@@ -57,14 +64,10 @@ class CsvWriter final : public results::RowWriter {
       buffer_.append(number, end);
     }
     buffer_ += '\n';
-    if (buffer_.size() > (1u << 16)) write();
+    if (buffer_.size() > buffer_size || timer_.is_due()) write();
   }
 
-  void flush() override {
-    write();
-    errno = 0;
-    if (std::fflush(file_) != 0) fail();
-  }
+  void flush() override { write(); }
 
  private:
   struct Column {
@@ -92,22 +95,41 @@ class CsvWriter final : public results::RowWriter {
     }
   }
 
+  // Hands whole rows to the operating system. Where it does not take them all, the file is cut back to its last whole
+  // row and takes no more.
   void write() {
-    errno = 0;
-    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
+    if (failed_ || buffer_.empty()) return;
+    failed_ = true;
+    if (!has_disk_space(path_, static_cast<double>(buffer_.size()))) throw OutputError(write_failure(path_, ENOSPC));
+    std::size_t written = 0;
+    while (written < buffer_.size()) {
+      errno = 0;
+      const ssize_t count = ::write(file_, buffer_.data() + written, buffer_.size() - written);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) {
+        const int reason = errno;
+        const std::size_t row_end = buffer_.rfind('\n', written == 0 ? 0 : written - 1);
+        const std::size_t whole = written == 0 || row_end == std::string::npos ? 0 : row_end + 1;
+        (void)!::ftruncate(file_, static_cast<off_t>(size_ + whole));  // a device has no length; nothing is lost then
+        throw OutputError(write_failure(path_, reason));
+      }
+      written += static_cast<std::size_t>(count);
+    }
+    failed_ = false;
+    size_ += buffer_.size();
     buffer_.clear();
   }
-  [[noreturn]] void fail() {
-    failed_ = true;
-    throw OutputError(write_failure(path_, errno));
-  }
+
+  static constexpr std::size_t buffer_size = 1u << 16;
 
   std::filesystem::path path_;
   std::vector<results::Block> blocks_;
   std::vector<Column> columns_;
   std::string header_, buffer_;
-  std::FILE* file_ = nullptr;
+  int file_ = -1;
+  std::size_t size_ = 0;
   bool failed_ = false;
+  FlushTimer timer_;
 };
 
 }  // namespace

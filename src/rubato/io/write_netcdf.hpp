@@ -8,12 +8,17 @@
 
 namespace rubato::io {
 
+class NetcdfFile;
+
 /// One netCDF-4 file: a group an analysis, a subgroup a named table. Rows are along an unlimited dimension with its
 /// coordinate variable; the names along `coordinate` and `slider` are string variables of the same name, so that xarray
 /// labels them. Words are numbers with flag_values and flag_meanings (blanks in a word become underscores).
 ///
 /// Rows are buffered to about a megabyte and reach the disk at least once a second, so that memory does not grow and
-/// what was computed stays readable after an interrupt. Throws OutputError.
+/// what was computed stays readable after an interrupt. Tables may be written by several threads, one each.
+///
+/// Throws OutputError. Rows that would not fit on the disk, or into the size that a file may have, are refused before
+/// they are written, so that the file stays readable and can be concluded and closed.
 class NetcdfSink final : public results::Sink {
  public:
   NetcdfSink(const std::filesystem::path& path, const Provenance& provenance);
@@ -23,11 +28,12 @@ class NetcdfSink final : public results::Sink {
                 const std::vector<std::pair<std::string, std::string>>& attributes) override;
   /// Closes the file; throws OutputError where what is buffered cannot be written.
   void close();
-
-  class File;
+  /// Whether a write has failed in spite of that: the file may be unreadable, and HDF5 crashes as the process ends
+  /// unless it ends by std::_Exit.
+  bool has_failed() const;
 
  private:
-  std::shared_ptr<File> file_;
+  std::shared_ptr<NetcdfFile> file_;
 };
 
 }  // namespace rubato::io
