@@ -40,7 +40,15 @@ int run(const RunOptions& options) {
     ProgressBar progress(options.quiet);
     analysis::RunContext context{sink, progress, stop_on_interrupt()};
     for (const auto& analysis : study.analyses) {
-      const analysis::RunReport report = analysis::run_analysis(analysis, study.system, study.parameters, context);
+      analysis::RunReport report;
+      try {
+        report = analysis::run_analysis(analysis, study.system, study.parameters, context);
+      } catch (const OutputError& fault) {  // what is written stays, and says why it ends
+        fmt::print(stderr, "error: {}\n", fault.what());
+        netcdf.conclude(analysis.name, "failed", fault.what(), {});
+        status = exit_failed;
+        break;
+      }
       if (report.status == analysis::RunStatus::done) continue;
       fmt::print(stderr, "{}: analysis \"{}\" {}: {}\n", study.description.file, analysis.name,
                  report.status == analysis::RunStatus::failed ? "failed" : "stopped", report.message);

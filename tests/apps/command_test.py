@@ -152,7 +152,10 @@ class Command(unittest.TestCase):
         result = self.run_command("run", study, "-o", "out", preexec_fn=limit)
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertRegex(result.stderr, r"error: out/\S+: ")
-        self.assertGreater(len(self.rows("out/long.csv")), 100)
+        rows = self.rows("out/long.csv")
+        self.assertGreater(len(rows), 100)
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows), "no row is cut")
+        self.assertTrue((self.folder / "out/results.nc").read_bytes().startswith(b"\x89HDF"))
 
     def test_a_huge_output_is_refused_before_it_begins(self):
         study = self.write(LONG.replace("DURATION", "1e9").replace("every = 100", "every = 1"))
