@@ -25,7 +25,8 @@ bool needs_parameters(const MethodInfo& info) {
 std::string radius_text(const MethodInfo& info) {
   if (needs_parameters(info)) return "by parameters";
   const double radius = integrate::spectral_radius_at_infinity(integrate::make_method(info.name));
-  return std::isinf(radius) ? "grows" : fmt::format("{:.4g}", radius);
+  if (std::isinf(radius)) return "grows";
+  return radius < 1e-4 ? "0" : fmt::format("{:.4g}", radius);  // the round-off of a double eigenvalue at 0
 }
 
 std::string optional_number(const std::optional<double>& value, const char* missing) {
