@@ -20,6 +20,7 @@ struct StudyOptions {
 struct RunOptions {
   StudyOptions study;
   std::filesystem::path folder;  ///< empty: results/ beside the study
+  int jobs = 1;                  ///< analyses at a time
   bool quiet = false;
   std::string command;  ///< as it was called, for the provenance
 };

@@ -4,8 +4,11 @@
 
 namespace rubato::app {
 
-/// A flag that the first Ctrl-C (or SIGTERM) raises, so that analyses stop at the next accepted step and keep what they
-/// have; the second ends the process. SIGXFSZ is ignored: a file that may not grow is an error of its write.
+/// A flag that the first Ctrl-C (or SIGTERM, or the end of the terminal) raises, so that analyses stop at the next
+/// accepted step and keep what they have; the second ends the process.
+///
+/// A file that may not grow is then an error of its write, and whoever stops reading the messages stops no run: SIGXFSZ
+/// and SIGPIPE are ignored.
 const std::atomic<bool>& stop_on_interrupt();
 
 }  // namespace rubato::app

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "messages.hpp"
 
 #include <rubato/core/error.hpp>
 #include <rubato/core/version.hpp>
@@ -7,7 +8,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -17,6 +21,47 @@ std::string called(int argc, char** argv) {
   std::string line = "rubato";
   for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
   return line;
+}
+
+/// `--only NAME ...` and `--set PARAM=VALUE ...` take every word that follows, a study among them: the one with a dot
+/// or a slash, which the name of an analysis cannot hold, and without the equals sign of a setting.
+void find_study(rubato::app::StudyOptions& options) {
+  const auto take = [&](std::vector<std::string>& words, const auto& is_study) {
+    const auto found = std::find_if(words.begin(), words.end(), is_study);
+    if (!options.study.empty() || found == words.end()) return;
+    options.study = *found;
+    words.erase(found);
+  };
+  const auto is_path = [](const std::string& word) { return word.find_first_of("./") != std::string::npos; };
+  take(options.only, is_path);
+  take(options.set, [&](const std::string& word) { return is_path(word) && word.find('=') == std::string::npos; });
+  if (options.study.empty()) throw rubato::InvalidInput("name the study file: rubato run STUDY.toml");
+}
+
+/// `error: ...` in the manner of the other messages, with the nearest option or subcommand.
+std::string usage_message(const CLI::App* cli, const CLI::Error& fault) {
+  const auto chosen = cli->get_subcommands();
+  const CLI::App* command = chosen.empty() ? cli : chosen.front();
+  const std::string help =
+      fmt::format("\n`{} --help` says more\n", command == cli ? "rubato" : "rubato " + command->get_name());
+  const auto extras = cli->remaining(true);
+  if (extras.empty()) return fmt::format("error: {}{}", fault.what(), help);
+  std::vector<std::string> known;
+  if (command == cli)
+    for (const CLI::App* other : cli->get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(other->get_name());
+  for (const CLI::Option* option : command->get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  return fmt::format("error: {} \"{}\" is unknown{}{}", command == cli ? "the subcommand or option" : "the argument",
+                     extras.front(), rubato::suggestion(extras.front(), known), help);
+}
+
+/// What stdout holds back is written now, while it can still be said that it cannot. A reader that has gone (`| head`)
+/// wanted no more.
+int finish(int status) {
+  if (std::fflush(stdout) == 0 || errno == EPIPE) return status;
+  rubato::app::tell(fmt::format("error: the answer cannot be written to stdout: {}", std::strerror(errno)));
+  return status == rubato::app::exit_done ? rubato::app::exit_failed : status;
 }
 
 }  // namespace
@@ -30,18 +75,22 @@ int main(int argc, char** argv) {
   cli.name("rubato");
   cli.set_version_flag("--version", std::string("rubato ") + version);
   cli.require_subcommand(1);
-  cli.failure_message(CLI::FailureMessage::simple);
+  cli.failure_message(usage_message);
 
   app::RunOptions run_options;
   run_options.command = called(argc, argv);
   auto* run = cli.add_subcommand("run", "run a study: results.nc, CSV files and report.html");
   const auto study_options = [](CLI::App* command, app::StudyOptions& options) {
-    command->add_option("study", options.study, "the study file (TOML)")->required();
-    command->add_option("--only", options.only, "run only these analyses");
-    command->add_option("--set", options.set, "replace the value of a parameter: PARAM=VALUE")->allow_extra_args(false);
+    command->add_option("study", options.study, "the study file (TOML), required");
+    command->add_option("--only", options.only, "run only these analyses")->type_name("NAME");
+    command->add_option("--set", options.set, "replace the values of parameters")->type_name("PARAM=VALUE");
   };
   study_options(run, run_options.study);
-  run->add_option("-o,--output", run_options.folder, "folder of the results (default: results/ beside the study)");
+  run->add_option("-o,--output", run_options.folder, "folder of the results (default: results/ beside the study)")
+      ->type_name("DIR");
+  run->add_option("--jobs", run_options.jobs, "run so many analyses at a time (default: 1)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024).description(""));
   run->add_flag("-q,--quiet", run_options.quiet, "no progress, no messages but errors");
 
   app::StudyOptions check_options;
@@ -66,27 +115,30 @@ int main(int argc, char** argv) {
   try {
     cli.parse(argc, argv);
   } catch (const CLI::ParseError& fault) {
-    return cli.exit(fault) == 0 ? app::exit_done : app::exit_wrong;
+    return cli.exit(fault) == 0 ? finish(app::exit_done) : app::exit_wrong;
   }
   try {
-    if (*run) return app::run(run_options);
-    if (*check) return app::check(check_options);
+    if (*run) find_study(run_options.study);
+    if (*check) find_study(check_options);
+    if (*run) return finish(app::run(run_options));
+    if (*check) return finish(app::check(check_options));
     if (*methods) {
       if (method.empty() && (csv || !method_parameters.empty()))
         throw InvalidInput("--csv and --set need the name of a method");
-      return method.empty() ? app::list_methods() : app::show_method(method, method_parameters, csv);
+      return finish(method.empty() ? app::list_methods() : app::show_method(method, method_parameters, csv));
     }
-    if (*example) return example_name.empty() ? app::list_examples() : app::copy_example(example_name, example_folder);
+    if (*example)
+      return finish(example_name.empty() ? app::list_examples() : app::copy_example(example_name, example_folder));
     if (*schema) fmt::print("{}", io::study_schema());
-    return app::exit_done;
+    return finish(app::exit_done);
   } catch (const InvalidInput& fault) {
-    fmt::print(stderr, "{}\n", fault.what());
+    app::tell(fault.what());
     return app::exit_wrong;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "error: out of memory; observe fewer coordinates, or take a smaller model\n");
+    app::tell("error: out of memory; observe fewer coordinates, or take a smaller model");
     return app::exit_failed;
   } catch (const std::exception& fault) {
-    fmt::print(stderr, "error: {}\n", fault.what());
+    app::tell(fmt::format("error: {}", fault.what()));
     return app::exit_failed;
   }
 }

@@ -1,5 +1,7 @@
 #include "progress_bar.hpp"
 
+#include "messages.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -11,10 +13,11 @@ namespace rubato::app {
 namespace {
 
 std::string duration(double seconds) {
-  if (seconds < 60.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 3600.0)
-    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
-  return fmt::format("{:.0f} h {:02.0f} min", std::floor(seconds / 3600.0), std::fmod(seconds, 3600.0) / 60.0);
+  if (seconds < 59.5) return fmt::format("{:.0f} s", seconds);
+  if (!(seconds < 1e9)) return "very long";
+  const long whole = std::lround(seconds);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
 std::string rate(double per_second, const std::string& unit) {
@@ -25,7 +28,8 @@ std::string rate(double per_second, const std::string& unit) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool quiet) : quiet_(quiet), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(bool quiet, bool has_neighbours)
+    : quiet_(quiet), is_bar_(!has_neighbours && isatty(STDERR_FILENO) != 0) {}
 
 void ProgressBar::begin(const std::string& what, double total, const std::string& unit) {
   what_ = what;
@@ -39,7 +43,7 @@ void ProgressBar::advance(double done) {
   done_ = done;
   if (quiet_) return;
   const auto now = Clock::now();
-  if (now - last_ < (is_terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
+  if (now - last_ < (is_bar_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000))) return;
   last_ = now;
   draw(false);
 }
@@ -55,13 +59,14 @@ void ProgressBar::draw(bool is_last) {
   std::string line = fmt::format("{}: {:.10g} of {:.10g} {} ({:.0f} %)", what_, done_, total_, unit_, 100.0 * share);
   if (seconds > 0.05) line += ", " + rate(speed, unit_);
   line += is_last ? ", " + duration(seconds) : speed > 0.0 ? ", " + duration((total_ - done_) / speed) + " left" : "";
-  if (!is_terminal_) {
-    fmt::print(stderr, "{}\n", line);
+  if (!is_bar_) {
+    tell(line);
     return;
   }
   const int filled = static_cast<int>(share * 24.0);
-  fmt::print(stderr, "\r\033[K[{}{}] {}{}", std::string(static_cast<std::size_t>(filled), '#'),
-             std::string(static_cast<std::size_t>(24 - filled), '.'), line, is_last ? "\n" : "");
+  const std::string bar =
+      std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(24 - filled), '.');
+  std::fputs(fmt::format("\r\033[K[{}] {}{}", bar, line, is_last ? "\n" : "").c_str(), stderr);
   std::fflush(stderr);
 }
 

@@ -7,11 +7,11 @@
 
 namespace rubato::app {
 
-/// On a terminal a bar with rate and time left, redrawn ten times a second; elsewhere a plain line every ten seconds,
-/// and one at the end. Everything goes to stderr.
+/// On a terminal a bar with rate and time left, redrawn ten times a second; elsewhere, and where several analyses run
+/// at a time, a plain line every ten seconds, and one at the end. Everything goes to stderr.
 class ProgressBar final : public analysis::Progress {
  public:
-  explicit ProgressBar(bool quiet);
+  ProgressBar(bool quiet, bool has_neighbours);
 
   void begin(const std::string& what, double total, const std::string& unit) override;
   void advance(double done) override;
@@ -21,7 +21,7 @@ class ProgressBar final : public analysis::Progress {
   using Clock = std::chrono::steady_clock;
   void draw(bool is_last);
 
-  bool quiet_, is_terminal_;
+  bool quiet_, is_bar_;
   std::string what_, unit_;
   double total_ = 0.0, done_ = 0.0;
   Clock::time_point start_, last_;

@@ -1,4 +1,5 @@
 #include "interrupt.hpp"
+#include "messages.hpp"
 #include "prepared_study.hpp"
 #include "progress_bar.hpp"
 
@@ -11,11 +12,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
+#include <optional>
+#include <thread>
 
 namespace rubato::app {
 namespace {
+
+using analysis::RunReport;
+using analysis::RunStatus;
 
 std::filesystem::path folder_of(const RunOptions& options) {
   if (!options.folder.empty()) return options.folder;
@@ -23,7 +31,80 @@ std::filesystem::path folder_of(const RunOptions& options) {
   return (beside.empty() ? std::filesystem::path(".") : beside) / "results";
 }
 
-int worse(int a, int b) { return a == exit_done ? b : a; }
+/// Runs the analyses of a study, several at a time; each writes tables of its own, so that the results do not depend on
+/// how many. What goes wrong with one is in its report, and those that have not begun are left.
+class Runner {
+ public:
+  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink)
+      : study_(study), options_(options), sink_(sink), stop_(stop_on_interrupt()), reports_(study.analyses.size()) {}
+
+  /// The report of each analysis; none where it has not begun.
+  const std::vector<std::optional<RunReport>>& run() {
+    const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs), reports_.size());
+    if (jobs == 1) {
+      work(study_.system, false);
+      return reports_;
+    }
+    std::vector<std::jthread> threads;
+    // Loads hold the workspace of their formulas: each thread has a system of its own.
+    for (std::size_t i = 0; i < jobs; ++i) threads.emplace_back([this, system = study_.system] { work(system, true); });
+    threads.clear();
+    return reports_;
+  }
+
+ private:
+  void work(const system::LocallyNonlinear& system, bool has_neighbours) {
+    for (std::size_t i = next_++; i < reports_.size() && !is_over_; i = next_++) {
+      reports_[i] = run_one(study_.analyses[i], system, has_neighbours);
+      if (reports_[i]->status == RunStatus::interrupted) is_over_ = true;
+    }
+  }
+
+  RunReport run_one(const model::AnalysisDescription& task, const system::LocallyNonlinear& system,
+                    bool has_neighbours) {
+    ProgressBar progress(options_.quiet, has_neighbours);
+    analysis::RunContext context{sink_, progress, stop_};
+    RunReport report;
+    try {
+      report = analysis::run_analysis(task, system, study_.parameters, context);
+    } catch (const std::bad_alloc&) {
+      report = {RunStatus::failed, "out of memory; observe fewer coordinates, or take a smaller model", {}};
+    } catch (const std::exception& fault) {
+      report = {RunStatus::failed, fault.what(), {}};
+      is_over_ = true;  // what cannot be written now cannot be written later
+    }
+    if (report.status != RunStatus::done)
+      tell(fmt::format("{}: analysis \"{}\" {}: {}", study_.description.file, task.name,
+                       report.status == RunStatus::failed ? "failed" : "stopped", report.message));
+    return report;
+  }
+
+  const PreparedStudy& study_;
+  const RunOptions& options_;
+  results::Sink& sink_;
+  const std::atomic<bool>& stop_;
+  std::vector<std::optional<RunReport>> reports_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> is_over_{false};
+};
+
+/// Notes in the file what the analyses could not: that a write was refused, that they were not reached. The exit status
+/// is that of the first analysis that was not done.
+int conclude(const PreparedStudy& study, const std::vector<std::optional<RunReport>>& reports, io::NetcdfSink& sink) {
+  int status = exit_done;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const std::string& name = study.analyses[i].name;
+    if (!reports[i]) {
+      sink.conclude(name, "interrupted", "not begun", {});
+      continue;
+    }
+    if (reports[i]->status == RunStatus::done) continue;
+    const bool has_failed = reports[i]->status == RunStatus::failed;
+    sink.conclude(name, has_failed ? "failed" : "interrupted", reports[i]->message, {});
+    if (status == exit_done) status = has_failed ? exit_failed : exit_interrupted;
+  }
+  return status;
+}
 
 }  // namespace
 
@@ -35,29 +116,13 @@ int run(const RunOptions& options) {
     io::prepare_output_folder(folder, study.expected_bytes());
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
                                                   study.description.text, options.command, io::utc_now()});
+    for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);
     io::CsvSink csv(folder);
     io::TeeSink sink({&netcdf, &csv});
-    ProgressBar progress(options.quiet);
-    analysis::RunContext context{sink, progress, stop_on_interrupt()};
-    for (const auto& analysis : study.analyses) {
-      analysis::RunReport report;
-      try {
-        report = analysis::run_analysis(analysis, study.system, study.parameters, context);
-      } catch (const OutputError& fault) {  // what is written stays, and says why it ends
-        fmt::print(stderr, "error: {}\n", fault.what());
-        netcdf.conclude(analysis.name, "failed", fault.what(), {});
-        status = exit_failed;
-        break;
-      }
-      if (report.status == analysis::RunStatus::done) continue;
-      fmt::print(stderr, "{}: analysis \"{}\" {}: {}\n", study.description.file, analysis.name,
-                 report.status == analysis::RunStatus::failed ? "failed" : "stopped", report.message);
-      status = worse(status, report.status == analysis::RunStatus::failed ? exit_failed : exit_interrupted);
-      if (report.status == analysis::RunStatus::interrupted) break;
-    }
+    status = conclude(study, Runner(study, options, sink).run(), netcdf);
     netcdf.close();
   } catch (const OutputError& fault) {
-    fmt::print(stderr, "error: {}\n", fault.what());
+    tell(fmt::format("error: {}", fault.what()));
     // HDF5 tries once more to write what it could not as the process ends, and crashes: leave without it.
     std::fflush(nullptr);
     std::_Exit(exit_failed);
@@ -65,8 +130,8 @@ int run(const RunOptions& options) {
   try {
     report::write_report(folder / "results.nc", folder / "report.html");
   } catch (const std::exception& fault) {  // the results are safe; only their picture is missing
-    fmt::print(stderr, "error: the report was not written: {}\n", fault.what());
-    return worse(status, exit_failed);
+    tell(fmt::format("error: the report was not written: {}", fault.what()));
+    return status == exit_done ? exit_failed : status;
   }
   if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
   return status;

@@ -12,6 +12,7 @@ import time
 import unittest
 
 RUBATO, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+NCDUMP = shutil.which("ncdump")  # of netcdf-bin; without it the files are judged by the report alone
 
 LONG = """
 [[coordinate]]
@@ -45,6 +46,10 @@ class Command(unittest.TestCase):
     def write(self, text, name="study.toml"):
         (self.folder / name).write_text(text)
         return name
+
+    def dump(self, path, *options):
+        return subprocess.run([NCDUMP, *options, self.folder / path], capture_output=True, text=True, check=True,
+                              timeout=60).stdout
 
     def rows(self, path):
         with open(self.folder / path, newline="") as file:
@@ -91,8 +96,72 @@ class Command(unittest.TestCase):
             if message:
                 self.assertEqual(result.stderr, message)
             self.assertFalse((self.folder / "out").exists())
-        self.assertEqual(self.run_command("run", study, "--sett", "a=1").returncode, 2)
-        self.assertEqual(self.run_command().returncode, 2)
+        options = 'known: --help, --only, --set, --output, --jobs, --quiet'
+        for arguments, message in [
+                (["run", study, "--sett", "a=1"],
+                 f'error: the argument "--sett" is unknown; did you mean "--set"? ({options})\n`rubato run --help` says more\n'),
+                (["run", study, "--jobs", "0"],
+                 "error: --jobs: Value 0 not in range 1 to 1024\n`rubato run --help` says more\n"),
+                (["run", study, "--set", "N0"], "error: --set N0: write PARAM=VALUE, such as --set N0=25\n"),
+                (["run", study, "--set", "N0=1+"], None),
+                (["run", study, "--set", "N0=-1"], None),
+                (["run"], "error: name the study file: rubato run STUDY.toml\n"),
+                ([], "error: A subcommand is required\n`rubato --help` says more\n"),
+                (["rnu", study], 'error: the subcommand or option "rnu" is unknown; did you mean "run"? '
+                                 '(known: run, check, methods, example, schema, --help, --version)\n'
+                                 '`rubato --help` says more\n')]:
+            result = self.run_command(*arguments)
+            self.assertEqual((result.returncode, result.stdout), (2, ""), arguments)
+            self.assertIn("error: ", result.stderr)
+            if message:
+                self.assertEqual(result.stderr, message)
+
+    def test_the_study_may_follow_lists_of_names_and_settings(self):
+        study = EXAMPLES / "single-mass-slider" / "study.toml"
+        for options in (["--only", "response", "exact"], ["--set", "N0=0.5"], ["--only", "exact", "--set", "N0=.5"]):
+            result = self.run_command("run", "-q", "-o", "out", *options, study)
+            self.assertEqual((result.returncode, result.stderr), (0, ""), options)
+            self.assertEqual(self.run_command("check", *options, study).returncode, 0)
+
+    def test_results_do_not_depend_on_the_number_of_jobs(self):
+        study = EXAMPLES / "single-mass-slider" / "study.toml"
+        for jobs in ("1", "2"):
+            self.assertEqual(self.run_command("run", study, "-o", jobs, "--jobs", jobs).returncode, 0)
+        names = sorted(path.name for path in (self.folder / "1").glob("*.csv"))
+        self.assertEqual(len(names), 4)
+        for name in names:
+            self.assertEqual((self.folder / "1" / name).read_bytes(), (self.folder / "2" / name).read_bytes())
+        if NCDUMP:
+            one, two = (self.dump(f"{jobs}/results.nc").replace(f"-o {jobs} --jobs {jobs}", "").splitlines()
+                        for jobs in "12")
+            differing = [line for line, other in zip(one, two, strict=True) if line != other]
+            self.assertTrue(all(":history" in line for line in differing), differing)
+
+    def test_a_wrong_study_leaves_earlier_results_alone(self):
+        study = EXAMPLES / "single-mass" / "study.toml"
+        self.run_command("run", study, "-o", "out", "-q")
+        before = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+        self.assertIn("results.nc", before)
+        self.write((study).read_text().replace("mass = ", "mass = -"))
+        self.assertEqual(self.run_command("run", "study.toml", "-o", "out").returncode, 2)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()})
+
+    def test_help_names_every_option_and_the_version_is_a_line(self):
+        self.assertRegex(self.run_command("--version").stdout, r"^rubato \d+\.\d+\.\d+\n$")
+        text = self.run_command("--help")
+        self.assertEqual((text.returncode, text.stderr), (0, ""))
+        for word in ("run", "check", "methods", "example", "schema", "rubato run underplatform-damper/study.toml"):
+            self.assertIn(word, text.stdout)
+        text = self.run_command("run", "--help").stdout
+        for word in ("--only NAME ...", "--set PARAM=VALUE ...", "-o,--output DIR", "--jobs N", "-q,--quiet"):
+            self.assertIn(word, text)
+
+    def test_a_full_stdout_is_an_error(self):
+        for arguments in (["schema"], ["methods"], ["--help"], ["example"]):
+            with open("/dev/full", "w") as full:
+                result = subprocess.run([RUBATO, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            self.assertEqual(result.returncode, 3, arguments)
+            self.assertRegex(result.stderr, r"^error: .*No space left on device\n$")
 
     def test_check_says_what_would_run(self):
         result = self.run_command("check", EXAMPLES / "underplatform-damper" / "study.toml")
@@ -111,21 +180,84 @@ class Command(unittest.TestCase):
         self.assertEqual(self.run_command("check", "mine/study.toml").returncode, 0)
         self.assertEqual(self.run_command("example", "matrices", "mine").returncode, 2)  # never over what is there
 
+    def start(self, study, **options):
+        process = subprocess.Popen([RUBATO, "run", study, "-o", "out"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True, **options)
+        self.addCleanup(process.kill)
+        return process
+
+    def wait_for_rows(self, name="out/long.csv"):
+        """Until the run has written some: it may start late on a busy machine."""
+        path, end = self.folder / name, time.monotonic() + 60
+        while not (path.exists() and path.stat().st_size > 100_000):
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.02)
+
     def test_ctrl_c_keeps_what_was_computed(self):
         study = self.write(LONG.replace("DURATION", "1e8"))
-        for sent in (signal.SIGINT, signal.SIGTERM):
-            process = subprocess.Popen([RUBATO, "run", study, "-o", "out"], cwd=self.folder, stdout=subprocess.PIPE,
-                                       stderr=subprocess.PIPE, text=True)
-            time.sleep(1.5)
+        for sent in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            process = self.start(study)
+            self.wait_for_rows()
             process.send_signal(sent)
             out, err = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 130, err)
-            self.assertRegex(err, r'analysis "long" stopped: interrupted at t = \S+ s of (1e\+08|100000000) s')
+            self.assertRegex(err, r'study.toml: analysis "long" stopped: interrupted at t = \S+ s of (1e\+08|100000000) s')
+            self.assertEqual(out, "out/report.html\n")
             rows = self.rows("out/long.csv")
             self.assertGreater(len(rows), 1000)
             self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
-            report = (self.folder / "out/report.html").read_text()
-            self.assertIn("interrupted", report)
+            self.assertIn("interrupted", (self.folder / "out/report.html").read_text())
+            if NCDUMP:
+                header = self.dump("out/results.nc", "-h")
+                self.assertIn(':status = "interrupted" ;', header)
+                # The header row is none; the file holds every row that the table holds.
+                self.assertIn(f"time = UNLIMITED ; // ({len(rows) - 1} currently)", header)
+
+    def test_analyses_that_an_interrupt_did_not_let_begin_are_named(self):
+        text = LONG.replace("DURATION", "1e8")
+        study = self.write(text + text[text.index("[[analysis]]"):].replace('"long"', '"later"'))
+        process = self.start(study)
+        self.wait_for_rows()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertTrue((self.folder / "out/report.html").exists())
+        if NCDUMP:
+            self.assertIn(':message = "not begun" ;', self.dump("out/results.nc", "-h"))
+
+    def test_a_killed_run_leaves_a_readable_file(self):
+        study = self.write(LONG.replace("DURATION", "1e8"))
+        process = self.start(study)
+        self.wait_for_rows()
+        time.sleep(1.5)  # past the first second's flush
+        process.kill()
+        process.communicate(timeout=60)
+        if NCDUMP:
+            header = self.dump("out/results.nc", "-h")
+            self.assertIn(':status = "unfinished" ;', header)
+            self.assertNotIn("(0 currently)", header)
+
+    def test_a_run_outlives_the_reader_of_its_messages(self):
+        study = self.write(LONG.replace("DURATION", "1e4"))
+        process = self.start(study)
+        process.stderr.close()
+        process.stdout.close()
+        self.assertEqual(process.wait(timeout=60), 0)
+        self.assertTrue((self.folder / "out/report.html").exists())
+
+    def test_two_runs_do_not_write_into_one_folder(self):
+        study = self.write(LONG.replace("DURATION", "1e8"))
+        first = self.start(study)
+        self.wait_for_rows()
+        second = self.run_command("run", study, "-o", "out")
+        self.assertEqual(second.returncode, 3)
+        self.assertIn("error: out/results.nc: ", second.stderr)
+        first.send_signal(signal.SIGINT)
+        first.communicate(timeout=60)
+        self.assertEqual(first.returncode, 130)
+        rows = self.rows("out/long.csv")
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
 
     def test_failed_mathematics_exits_with_3_and_keeps_the_rows(self):
         study = self.write(LONG.replace("DURATION", "5.0").replace("amplitude = 1.0\nangular_frequency = 2.0",
@@ -147,15 +279,45 @@ class Command(unittest.TestCase):
         study = self.write(LONG.replace("DURATION", "1e6"))
 
         def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4 << 20, 4 << 20))
 
         result = self.run_command("run", study, "-o", "out", preexec_fn=limit)
         self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertRegex(result.stderr, r"error: out/\S+: ")
+        self.assertRegex(result.stderr, r'study.toml: analysis "long" failed: out/\S+: File too large; write elsewhere')
         rows = self.rows("out/long.csv")
-        self.assertGreater(len(rows), 100)
-        self.assertTrue(all(len(row) == len(rows[0]) for row in rows), "no row is cut")
-        self.assertTrue((self.folder / "out/results.nc").read_bytes().startswith(b"\x89HDF"))
+        self.assertGreater(len(rows), 10000)
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
+        self.assertTrue((self.folder / "out/report.html").exists())
+        if NCDUMP:
+            self.assertIn(':status = "failed" ;', self.dump("out/results.nc", "-h"))
+
+    def test_a_disk_that_fills_up_keeps_results_and_report(self):
+        # A disk of 200 MB of its own, which another program fills while the run writes.
+        self.write(LONG.replace("DURATION", "1e5").replace("every = 100", "every = 20"))
+        script = f"""set -e
+            mount -t tmpfs -o size=200m tmpfs disk
+            {RUBATO} run study.toml -o disk/out 2> messages & run=$!
+            while ! [ -s disk/out/long.csv ]; do kill -0 $run; sleep 0.02; done
+            free=$(df --output=avail -k disk | tail -n 1)
+            head -c $((free - 20000))K /dev/zero > disk/filler
+            status=0; wait $run || status=$?
+            cp -r disk/out out
+            exit $status"""
+        (self.folder / "disk").mkdir()
+        if subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "tmpfs", self.folder / "disk"],
+                          capture_output=True).returncode != 0:
+            self.skipTest("no disk of its own can be mounted here")
+        result = subprocess.run(["unshare", "-rm", "sh", "-c", script], cwd=self.folder, timeout=120,
+                                stdout=subprocess.DEVNULL)
+        messages = (self.folder / "messages").read_text()
+        self.assertEqual(result.returncode, 3, messages)
+        self.assertRegex(messages, r'study.toml: analysis "long" failed: disk/out/\S+: the disk is full; free some space')
+        rows = self.rows("out/long.csv")
+        self.assertGreater(len(rows), 1000)
+        self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
+        self.assertIn("the disk is full", (self.folder / "out/report.html").read_text())
+        if NCDUMP:
+            self.assertIn(':status = "failed" ;', self.dump("out/results.nc", "-h"))
 
     def test_a_huge_output_is_refused_before_it_begins(self):
         study = self.write(LONG.replace("DURATION", "1e9").replace("every = 100", "every = 1"))

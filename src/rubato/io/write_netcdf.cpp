@@ -183,6 +183,11 @@ NetcdfSink::NetcdfSink(const std::filesystem::path& path, const Provenance& prov
 
 NetcdfSink::~NetcdfSink() = default;
 
+void NetcdfSink::expect(const std::string& analysis) {
+  const Lock lock(file_->mutex());
+  file_->attribute(file_->group(file_->id(), analysis), NC_GLOBAL, "status", "unfinished");
+}
+
 std::unique_ptr<results::RowWriter> NetcdfSink::open(const results::TableLayout& layout) {
   return std::make_unique<NetcdfWriter>(file_, layout);
 }

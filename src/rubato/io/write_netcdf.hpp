@@ -23,6 +23,9 @@ class NetcdfSink final : public results::Sink {
  public:
   NetcdfSink(const std::filesystem::path& path, const Provenance& provenance);
   ~NetcdfSink() override;
+  /// Makes the group of an analysis, so that groups have the order of these calls; its status is "unfinished" until it
+  /// is concluded, as a killed process leaves it.
+  void expect(const std::string& analysis);
   std::unique_ptr<results::RowWriter> open(const results::TableLayout& layout) override;
   void conclude(const std::string& analysis, const std::string& status, const std::string& message,
                 const std::vector<std::pair<std::string, std::string>>& attributes) override;
