@@ -45,6 +45,19 @@ TEST(Model, JoinsCoordinatesAndTheGround) {
   EXPECT_EQ(model.springs[1].second, 1);
 }
 
+TEST(Model, AMisspeltGroundIsRecognised) {
+  ModelDescription description = two_masses();
+  description.springs[0].between = {"blade", "gruond"};
+  try {
+    build(description, parameters);
+    FAIL() << "accepted";
+  } catch (const InvalidInput& fault) {
+    EXPECT_EQ(fault.message(),
+              "the spring between \"blade\" and \"gruond\" joins \"gruond\", which is no coordinate; did you mean "
+              "\"ground\"? (known: ground)");
+  }
+}
+
 TEST(Model, SlidersSlipAtFrictionCoefficientTimesNormalLoad) {
   ModelDescription description = two_masses();
   SliderDescription slider;

@@ -186,8 +186,11 @@ class Builder {
   Index find(const std::string& name, const Location& where, const std::string& role) const {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
-    throw InvalidInput(
-        where, fmt::format("{} \"{}\", which is no coordinate{}", role, name, suggestion(name, model_.coordinates)));
+    const std::vector<std::string> what_does_not_move{"ground"};
+    const bool means_ground =
+        nearest_name(name, model_.coordinates).empty() && !nearest_name(name, what_does_not_move).empty();
+    throw InvalidInput(where, fmt::format("{} \"{}\", which is no coordinate{}", role, name,
+                                          suggestion(name, means_ground ? what_does_not_move : model_.coordinates)));
   }
 
   void join(const Between& names, const std::array<Location, 2>& where, const std::string& part, Index& first,
