@@ -292,14 +292,16 @@ class Command(unittest.TestCase):
             self.assertIn(':status = "failed" ;', self.dump("out/results.nc", "-h"))
 
     def test_a_disk_that_fills_up_keeps_results_and_report(self):
-        # A disk of 200 MB of its own, which another program fills while the run writes.
+        # A disk of 200 MB of its own, which another program fills while the run, halted for that, has it open.
         self.write(LONG.replace("DURATION", "1e5").replace("every = 100", "every = 20"))
         script = f"""set -e
             mount -t tmpfs -o size=200m tmpfs disk
             {RUBATO} run study.toml -o disk/out 2> messages & run=$!
             while ! [ -s disk/out/long.csv ]; do kill -0 $run; sleep 0.02; done
+            kill -STOP $run
             free=$(df --output=avail -k disk | tail -n 1)
             head -c $((free - 20000))K /dev/zero > disk/filler
+            kill -CONT $run
             status=0; wait $run || status=$?
             cp -r disk/out out
             exit $status"""
