@@ -1,0 +1,89 @@
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/steady/excitation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr int most_harmonics = 64;
+constexpr double same_frequency = 1e-10;  // relative: frequencies come from formulas such as 3 * speed
+
+// The order of a frequency over a fundamental, or 0 where it is none.
+int order_over(double frequency, double fundamental) {
+  const double ratio = frequency / fundamental, whole = std::round(ratio);
+  return whole >= 1.0 && whole <= most_harmonics && std::abs(ratio - whole) <= same_frequency * whole
+             ? static_cast<int>(whole)
+             : 0;
+}
+
+// The largest frequency of which all given ones are multiples: the smallest divided by 1, 2, 3, ...
+double fundamental_of(const std::vector<double>& frequencies) {
+  const double lowest = *std::min_element(frequencies.begin(), frequencies.end());
+  for (int divisor = 1; divisor <= most_harmonics; ++divisor) {
+    const double candidate = lowest / divisor;
+    if (std::all_of(frequencies.begin(), frequencies.end(),
+                    [&](double frequency) { return order_over(frequency, candidate) > 0; }))
+      return candidate;
+  }
+  throw InvalidInput(fmt::format(
+      "the forces have no common period: their angular frequencies ({:.6g} to {:.6g} rad/s) are no multiples of one "
+      "fundamental up to its harmonic {}; choose commensurate frequencies, or solver = \"time_marching\"",
+      lowest, *std::max_element(frequencies.begin(), frequencies.end()), most_harmonics));
+}
+
+}  // namespace
+
+double Excitation::period() const { return 2.0 * std::numbers::pi / angular_frequency; }
+
+bool Excitation::is_half_wave_symmetric() const {
+  return (constant.size() == 0 || constant.cwiseAbs().maxCoeff() == 0.0) &&
+         std::all_of(harmonics.begin(), harmonics.end(), [](const LoadHarmonic& h) { return h.order % 2 == 1; });
+}
+
+Excitation excitation_of(const system::LocallyNonlinear& system) {
+  const Index n = system.size();
+  Excitation result;
+  result.constant = Vector::Zero(n);
+  result.limits.resize(system.slider_count());
+  for (Index i = 0; i < system.slider_count(); ++i)
+    result.limits[i] = system.sliders()[static_cast<std::size_t>(i)].limit;
+
+  std::vector<double> frequencies;
+  for (const auto& term : system.loads().terms()) {
+    const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law);
+    if (!harmonic)
+      throw InvalidInput(
+          "a periodic response needs harmonic loads (amplitude, angular_frequency, phase); a load is given as a "
+          "formula of t or a table: write it as a sum of harmonic forces, or run a transient");
+    if (harmonic->angular_frequency != 0.0) frequencies.push_back(std::abs(harmonic->angular_frequency));
+  }
+  if (frequencies.empty())
+    throw InvalidInput("a periodic response needs a harmonic load: add a [[force]] with amplitude and "
+                       "angular_frequency");
+  result.angular_frequency = fundamental_of(frequencies);
+
+  for (const auto& term : system.loads().terms()) {
+    const auto& law = std::get<model::HarmonicLaw>(term.law);
+    if (law.angular_frequency == 0.0) {
+      for (std::size_t i = 0; i < term.rows.size(); ++i)
+        result.constant[term.rows[i]] += term.weights[i] * law.amplitude * std::cos(law.phase);
+      continue;
+    }
+    const int order = order_over(std::abs(law.angular_frequency), result.angular_frequency);
+    const double phase = law.angular_frequency > 0.0 ? law.phase : -law.phase;
+    auto place = std::lower_bound(result.harmonics.begin(), result.harmonics.end(), order,
+                                  [](const LoadHarmonic& h, int k) { return h.order < k; });
+    if (place == result.harmonics.end() || place->order != order)
+      place = result.harmonics.insert(place, {order, ComplexVector::Zero(n)});
+    for (std::size_t i = 0; i < term.rows.size(); ++i)
+      place->amplitude[term.rows[i]] += term.weights[i] * std::polar(law.amplitude, phase);
+  }
+  return result;
+}
+
+}  // namespace rubato::integrate
