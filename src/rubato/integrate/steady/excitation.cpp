@@ -63,8 +63,9 @@ Excitation excitation_of(const system::LocallyNonlinear& system) {
     if (harmonic->angular_frequency != 0.0) frequencies.push_back(std::abs(harmonic->angular_frequency));
   }
   if (frequencies.empty())
-    throw InvalidInput("a periodic response needs a harmonic load: add a [[force]] with amplitude and "
-                       "angular_frequency");
+    throw InvalidInput(
+        "a periodic response needs a harmonic load: add a [[force]] with amplitude and "
+        "angular_frequency");
   result.angular_frequency = fundamental_of(frequencies);
 
   for (const auto& term : system.loads().terms()) {

@@ -33,8 +33,8 @@ struct Excitation {
 };
 
 /// The excitation of a system: its loads with their common period, and the limits of its sliders. A load of zero
-/// frequency is static. Throws InvalidInput where there is no harmonic load, for loads that are no harmonic functions of
-/// time, and for frequencies without a common period (up to the 64th harmonic of a fundamental).
+/// frequency is static. Throws InvalidInput where there is no harmonic load, for loads that are no harmonic functions
+/// of time, and for frequencies without a common period (up to the 64th harmonic of a fundamental).
 Excitation excitation_of(const system::LocallyNonlinear& system);
 
 }  // namespace rubato::integrate

@@ -41,16 +41,16 @@ struct SteadyResponse {
   int iterations = 0;     ///< of Newton, or periods marched
   int periods = 1;        ///< after which it repeats
 
-  Vector amplitude;                                ///< half peak to peak of each observed [o] [m]
-  Vector velocity_amplitude;                       ///< [o] [m/s]; empty unless asked for
-  Vector acceleration_amplitude;                   ///< [o] [m/s2]; likewise
-  Vector mean, rms;                                ///< over a period; rms about zero [o] [m]
-  ComplexMatrix harmonics;                         ///< [o x orders asked for] [m]: x contains Re(c exp(i order omega t))
-  Vector dissipated;                               ///< friction work of each slider over a period [m] [J]
-  Vector slip_share;                               ///< part of the period in which each slider slips [m] [-]
-  Vector offset;                                   ///< fc - kT u where a slider never slips, else 0 [m] [N]
-  double viscous_work = 0.0, input_work = 0.0;     ///< over a period [J]
-  long transitions = 0;                            ///< stick to slip and back, in a period
+  Vector amplitude;                             ///< half peak to peak of each observed [o] [m]
+  Vector velocity_amplitude;                    ///< [o] [m/s]; empty unless asked for
+  Vector acceleration_amplitude;                ///< [o] [m/s2]; likewise
+  Vector mean, rms;                             ///< over a period; rms about zero [o] [m]
+  ComplexMatrix harmonics;                      ///< [o x orders asked for] [m]: x contains Re(c exp(i order omega t))
+  Vector dissipated;                            ///< friction work of each slider over a period [m] [J]
+  Vector slip_share;                            ///< part of the period in which each slider slips [m] [-]
+  Vector offset;                                ///< fc - kT u where a slider never slips, else 0 [m] [N]
+  double viscous_work = 0.0, input_work = 0.0;  ///< over a period [J]
+  long transitions = 0;                         ///< stick to slip and back, in a period
 };
 
 /// Samples of a steady response at equal times over a period, the first at t = 0.
