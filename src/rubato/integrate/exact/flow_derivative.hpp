@@ -31,7 +31,7 @@ class FlowDerivative {
 
   const system::LocallyNonlinear& system_;
   Index n_, m_, size_;
-  Matrix flow_, joins_;                              // (q, v)' without sliders; M^-1 B
+  Matrix flow_, joins_;                               // (q, v)' without sliders; M^-1 B
   std::map<std::vector<SliderState>, Matrix> cache_;  // A^k/k! by columns of k
   Matrix derivative_, propagator_, product_;
   Vector length_powers_;

@@ -78,7 +78,7 @@ class TaylorPiece {
   std::vector<Load> loads_;
   Vector limits_;
   Matrix inverse_mass_, damping_, load_pattern_, joins_;  // M^-1 C, M^-1 P, M^-1 B
-  Matrix dense_damping_, inverse_root_;    // C; L^-1 of M = L L^T
+  Matrix dense_damping_, inverse_root_;                   // C; L^-1 of M = L L^T
   Matrix pattern_;
   std::map<std::vector<SliderState>, Operators> cache_;
   const Operators* operators_ = nullptr;

@@ -10,10 +10,16 @@ namespace rubato::integrate {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double round_off = 1e-13;       // of the amplitudes of an orbit whose residual is zero
-constexpr double singular = 1e-13;        // reciprocal condition of Newton's matrix at a resonance without damping
-constexpr double offset_margin = 1e-10;   // by which a slider that never slips stays inside its limit
-constexpr int most_halvings = 4, most_moves = 25, rest_periods = 20;
+constexpr double round_off = 1e-13;      // of the amplitudes of an orbit whose residual is zero
+constexpr double offset_margin = 1e-10;  // by which a slider that never slips stays inside its limit
+constexpr double suspicious = 1e3;       // a step that much longer than the state: a resonance without damping?
+constexpr double fine_balance = 2e-11;   // of the works in a period
+constexpr int most_halvings = 3, most_moves = 60, rest_periods = 20, longest_stretch = 64;
+
+double imbalance(const SteadyResponse& response) {
+  return std::abs(response.input_work - response.viscous_work - response.dissipated.sum()) /
+         std::abs(response.input_work);
+}
 
 }  // namespace
 
@@ -90,13 +96,12 @@ double PeriodicSolver::residual(const Excitation& excitation) {
   const double size = size_of(excitation, y_), moved = size_of(excitation, difference_);
   double result = moved > 0.0 ? moved / size : 0.0;
   for (Index i = 0; i < m_; ++i)
-    if (excitation.limits[i] > 0.0)
-      result = std::max(result, std::abs(difference_[2 * n_ + i]) / excitation.limits[i]);
+    if (excitation.limits[i] > 0.0) result = std::max(result, std::abs(difference_[2 * n_ + i]) / excitation.limits[i]);
   return result;
 }
 
 // Newton's step from y_ with the derivative of the pass just made. False at a resonance without damping.
-bool PeriodicSolver::correct(const Excitation&) {
+bool PeriodicSolver::correct() {
   matrix_ = derivative_.matrix();
   if (half_) matrix_ = -matrix_;
   matrix_.diagonal().array() -= 1.0;
@@ -137,10 +142,29 @@ bool PeriodicSolver::must_move_offsets(const Excitation& excitation) {
     const double lowest = -inside - stiffness * low, highest = inside - stiffness * high;
     centre_[i] = offset;
     if (!(lowest < highest)) continue;
-    offset_shift_[i] = std::clamp(wanted_offset_[i], lowest, highest) - offset;
-    moves = moves || std::abs(offset_shift_[i]) > 10.0 * offset_margin * limit;
+    const double shift = std::clamp(wanted_offset_[i], lowest, highest) - offset;
+    if (!(std::abs(shift) > 10.0 * offset_margin * limit)) continue;
+    moves = true;
+    // The structure gives way under a change of the offset, so that more of it is allowed than at rest.
+    const bool at_edge = wanted_offset_[i] < lowest || wanted_offset_[i] > highest;
+    offset_shift_[i] = at_edge ? shift / force_by_offset(i) : shift;
+    if (std::abs(offset_shift_[i]) > std::abs(wanted_offset_[i] - offset))
+      offset_shift_[i] = wanted_offset_[i] - offset;
   }
   return moves;
+}
+
+// How much the force of a slider that never slips changes with its offset, between 0 and 1.
+double PeriodicSolver::force_by_offset(Index slider) {
+  offset_probe_.setZero(m_);
+  offset_probe_[slider] = 1.0;
+  std::swap(offset_probe_, offset_shift_);
+  difference_.swap(best_);
+  difference_.setZero();
+  const bool solved = correct();
+  difference_.swap(best_);
+  std::swap(offset_probe_, offset_shift_);
+  return solved ? std::clamp(correction_[2 * n_ + slider], 0.05, 1.0) : 1.0;
 }
 
 bool PeriodicSolver::march(const Excitation& excitation, int periods) {
@@ -211,7 +235,7 @@ void PeriodicSolver::take_start(const Excitation& excitation, SteadyStart start)
     march_from_rest(excitation);
   else
     predict(excitation);
-  half_ = excitation.is_half_wave_symmetric() && wanted_offset_.cwiseAbs().maxCoeff() == 0.0;
+  half_ = excitation.is_half_wave_symmetric() && (wanted_offset_.array() == 0.0).all();
 }
 
 void PeriodicSolver::report_unbounded(SteadyResponse& response) const {
@@ -245,54 +269,26 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   flow_.set_excitation(excitation);
   take_start(excitation, start);
 
-  double best = infinity, last = infinity;
-  int halvings = 0, moves = 0, periods = 0, stretch = 4;
-  bool converged = false, moving = false;
-  while (response.iterations < options_.most_iterations) {
-    ++response.iterations;
-    const bool passed = pass(excitation);
-    last = passed ? residual(excitation) : infinity;
-    if (last <= options_.tolerance) {
-      if (moves < most_moves && must_move_offsets(excitation)) {
-        ++moves;
-        moving = true;
-      } else {
-        converged = true;
-        break;
-      }
-    }
-    if (last < best || moving) {
-      moving = false;
-      best = last;
-      best_ = y_;
-      halvings = 0;
-      const bool solved = correct(excitation);
-      offset_shift_.setZero();
-      if (solved) {
-        put(best_ + correction_, excitation);
-        if (size_of(excitation, correction_) < 1e3 * (size_of(excitation, best_) + 1e-300)) continue;
-      }
-      if (!solved || factors_.rcond() < singular) {
-        report_unbounded(response);
-        known_.clear();
-        return;
-      }
-    } else if (halvings < most_halvings && best < infinity) {
-      put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
-    } else {
-      if (best < infinity) y_ = best_;
-      if (periods >= options_.most_periods || !march(excitation, stretch)) break;
-      periods += stretch;
-      stretch *= 2;
-      best = infinity;
-    }
+  response.status = SteadyStatus::not_converged;
+  const bool converged = iterate(excitation, response);
+  if (response.status == SteadyStatus::unbounded) {
+    report_unbounded(response);
+    known_.clear();
+    return;
   }
-  response.residual = last;
   response.status = converged ? SteadyStatus::converged : SteadyStatus::not_converged;
   orbit_.measure(excitation, request_, half_, response);
+  // What the small rest of the residual does to the balance of a slightly damped structure.
+  for (int polish = 0; converged && polish < 2 && imbalance(response) > fine_balance && correct(); ++polish) {
+    ++response.iterations;
+    put(y_ + correction_, excitation);
+    if (!pass(excitation)) break;
+    response.residual = residual(excitation);
+    orbit_.measure(excitation, request_, half_, response);
+  }
   const double largest = response.amplitude.size() > 0 ? response.amplitude.maxCoeff() : 0.0;
   response.error = round_off;
-  if (correct(excitation) && largest > 0.0) {
+  if (correct() && largest > 0.0) {
     Vector rates = Vector::Zero(y_.size());
     rates.head(n_) = correction_.segment(n_, n_) / excitation.angular_frequency;
     response.error += std::hypot(observed_size(correction_), observed_size(rates)) / largest;
@@ -301,6 +297,57 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     remember(excitation);
   else
     known_.clear();
+}
+
+// Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
+// the flow itself is followed then.
+bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
+  double best = infinity;
+  int halvings = 0, periods = 0, stretch = 4;
+  bool may_move = true, moving = false;
+  Vector settled;  // an orbit whose offsets are being moved
+  while (response.iterations < options_.most_iterations) {
+    ++response.iterations;
+    double& last = response.residual;
+    last = pass(excitation) ? residual(excitation) : infinity;
+    if (last <= options_.tolerance) {
+      if (!may_move || response.iterations > most_moves || !must_move_offsets(excitation)) return true;
+      settled = y_;
+      moving = true;
+      best = infinity;
+    }
+    if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
+      best = last;
+      best_ = y_;
+      halvings = 0;
+      const bool solved = correct();
+      offset_shift_.setZero();
+      if (solved) {
+        put(best_ + correction_, excitation);
+        if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
+      }
+      std::vector<bool> sticks(static_cast<std::size_t>(m_));
+      for (Index i = 0; i < m_; ++i) sticks[static_cast<std::size_t>(i)] = !orbit_.slips(i);
+      if (is_at_undamped_resonance(system_, excitation, sticks)) {
+        response.status = SteadyStatus::unbounded;
+        return false;
+      }
+    } else if (moving) {  // another slider slips then: the offset stays
+      moving = may_move = false;
+      y_ = settled;
+      best = infinity;
+    } else if (halvings < most_halvings && best < infinity) {
+      put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
+    } else {
+      if (best < infinity) y_ = best_;
+      if (periods >= options_.most_periods || !march(excitation, stretch)) return false;
+      periods += stretch;
+      stretch = std::min(2 * stretch, longest_stretch);
+      best = infinity;
+      halvings = 0;
+    }
+  }
+  return false;
 }
 
 }  // namespace rubato::integrate

@@ -12,9 +12,9 @@
 namespace rubato::integrate {
 
 struct PeriodicOptions {
-  double tolerance = 1e-10;  ///< of the residual: |y(T) - y(0)| over |y(0)|, see PeriodicSolver
-  int most_iterations = 40;  ///< of Newton
-  int most_periods = 4000;   ///< marched where Newton alone does not come nearer
+  double tolerance = 1e-12;   ///< of the residual: |y(T) - y(0)| over |y(0)|, see PeriodicSolver
+  int most_iterations = 200;  ///< of Newton
+  int most_periods = 4000;    ///< marched where Newton alone does not come nearer
 };
 
 /// The periodic orbit itself, by shooting: Newton's method on
@@ -55,7 +55,9 @@ class PeriodicSolver final : public SteadySolver {
   bool march(const Excitation& excitation, int periods);
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
-  bool correct(const Excitation& excitation);
+  bool correct();
+  bool iterate(const Excitation& excitation, SteadyResponse& response);
+  double force_by_offset(Index slider);
   bool must_move_offsets(const Excitation& excitation);
   double size_of(const Excitation& excitation, const Vector& y) const;
   double observed_size(const Vector& y) const;
@@ -70,9 +72,10 @@ class PeriodicSolver final : public SteadySolver {
   ExactFlow flow_;
   FlowDerivative derivative_;
   Orbit orbit_;
-  system::State start_, end_;                      // of a pass
-  Vector y_, difference_, correction_, best_;      // (q, v, fc) at the start; P(y) - y; Newton's step from best_
-  Vector wanted_offset_, offset_shift_, centre_;   // of sliders that never slip; last: of all, at the last point
+  system::State start_, end_;                  // of a pass
+  Vector y_, difference_, correction_, best_;  // (q, v, fc) at the start; P(y) - y; Newton's step from best_
+  Vector wanted_offset_, offset_shift_, offset_probe_,
+      centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
   Eigen::PartialPivLU<Matrix> factors_;
   std::vector<Known> known_;  // the last three points, the newest first
