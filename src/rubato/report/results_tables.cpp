@@ -100,8 +100,9 @@ class GroupTable : public TableSource {
             std::span<double> values) const override {
     const std::size_t start[] = {first_row, 0}, count[] = {rows, labels};
     check(nc_get_vara_double(group_, ids_[variable], start, count, values.data()), variables_[variable].name);
+    const double missing = variables_[variable].categories.empty() ? NC_FILL_DOUBLE : NC_FILL_INT;
     for (double& value : values) {
-      if (value == NC_FILL_DOUBLE) value = std::numeric_limits<double>::quiet_NaN();
+      if (value == missing) value = std::numeric_limits<double>::quiet_NaN();
     }
   }
 
