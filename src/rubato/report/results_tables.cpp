@@ -107,6 +107,8 @@ class GroupTable : public TableSource {
   }
 
  private:
+  static constexpr std::size_t cache_bytes = 2u << 20;
+
   void add_variable(int id) {
     char name[NC_MAX_NAME + 1] = {};
     nc_type type = NC_NAT;
@@ -132,6 +134,9 @@ class GroupTable : public TableSource {
       variable.dimension = dimension;
       variable.labels = labels_of(group_, dimension, length);
     }
+    // Rows are read in order, so a few chunks suffice; netCDF would keep 16 MB a variable. Files of other making, which
+    // need not have chunks, are read without.
+    nc_set_var_chunk_cache(group_, id, cache_bytes, 11, 1.0f);
     std::istringstream meanings(attribute_or_empty(group_, id, "flag_meanings"));
     for (std::string word; meanings >> word;) variable.categories.push_back(word);
     variables_.push_back(std::move(variable));
