@@ -12,6 +12,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double round_off = 1e-13;      // of the amplitudes of an orbit whose residual is zero
 constexpr double offset_margin = 1e-10;  // by which a slider that never slips stays inside its limit
+constexpr double good_enough = 1e-10;    // residual that is accepted where round-off allows no smaller one
 constexpr double suspicious = 1e3;       // a step that much longer than the state: a resonance without damping?
 constexpr double fine_balance = 2e-11;   // of the works in a period
 constexpr int most_halvings = 3, most_moves = 60, rest_periods = 20, longest_stretch = 64;
@@ -332,6 +333,10 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
         response.status = SteadyStatus::unbounded;
         return false;
       }
+    } else if (best <= good_enough && best < infinity && !moving) {  // round-off: nothing better can be had
+      y_ = best_;
+      response.residual = pass(excitation) ? residual(excitation) : infinity;
+      return response.residual <= good_enough;
     } else if (moving) {  // another slider slips then: the offset stays
       moving = may_move = false;
       y_ = settled;
