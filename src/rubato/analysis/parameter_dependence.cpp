@@ -21,6 +21,31 @@ void visit_law(const model::TimeLawDescription& law, const Take& take) {
 }
 
 template <typename Take>
+void visit_structure(const model::StructureDescription& structure, const Take& take) {
+  const auto take_all = [&](const auto& quantities) {
+    for (const auto& quantity : quantities) take(quantity);
+  };
+  for (const auto& node : structure.nodes) take_all(node.position);
+  for (const auto& material : structure.materials) {
+    take(material.young);
+    if (material.poisson) take(*material.poisson);
+    if (material.shear_modulus) take(*material.shear_modulus);
+    take(material.density);
+  }
+  for (const auto& section : structure.sections) {
+    take(section.area);
+    take_all(section.inertia);
+    if (section.torsion) take(*section.torsion);
+    take_all(section.shear_factor);
+  }
+  for (const auto& beam : structure.beams) take_all(beam.orientation);
+  for (const auto& mass : structure.masses) {
+    if (mass.mass) take(*mass.mass);
+    take_all(mass.inertia);
+  }
+}
+
+template <typename Take>
 void visit(const model::ModelDescription& model, const Take& take_any) {
   const auto take = [&](const model::Quantity& quantity) { take_any(quantity, Role::structure, false); };
   for (const auto& coordinate : model.coordinates) {
@@ -28,6 +53,7 @@ void visit(const model::ModelDescription& model, const Take& take_any) {
     take(coordinate.position);
     take(coordinate.velocity);
   }
+  visit_structure(model.structure, take);
   if (model.matrices) {
     for (const auto& [name, value] : model.matrices->position) take(value);
     for (const auto& [name, value] : model.matrices->velocity) take(value);

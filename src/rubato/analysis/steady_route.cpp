@@ -1,6 +1,7 @@
 #include <rubato/analysis/steady_route.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
 
 namespace rubato::analysis {
 namespace {
@@ -27,7 +28,12 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
     if (system.slider_count() == 0) return linear(system, request, false);
-    throw InvalidInput("frequency responses with sliders are not available in this version");
+    if (route.kind == SteadyRoute::Kind::periodic) {
+      integrate::PeriodicOptions options;
+      if (route.tolerance > 0.0) options.tolerance = route.tolerance;
+      return std::make_unique<integrate::PeriodicSolver>(system, request, options);
+    }
+    throw InvalidInput("this solver is not available in this version; take solver = \"periodic\"");
   };
   return solvers;
 }
