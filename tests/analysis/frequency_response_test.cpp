@@ -12,7 +12,9 @@
 
 #include <cmath>
 #include <complex>
+#include <functional>
 #include <limits>
+#include <numbers>
 
 namespace rubato::testing {
 namespace {
@@ -47,6 +49,68 @@ SteadySolvers stuck_sliders() {
   return solvers;
 }
 
+/// Calls back before every point, and remembers sliders as springs.
+class WatchedSolver final : public integrate::SteadySolver {
+ public:
+  WatchedSolver(std::unique_ptr<integrate::SteadySolver> inner, std::function<void()> before_point, int lanes = 1)
+      : inner_(std::move(inner)), before_point_(std::move(before_point)), lanes_(lanes) {}
+  void solve(const integrate::Excitation& excitation, integrate::SteadyStart start,
+             integrate::SteadyResponse& response) override {
+    before_point_();
+    inner_->solve(excitation, start, response);
+  }
+  int lanes() const override { return lanes_; }
+  void solve_lanes(std::span<const integrate::Excitation> excitations, integrate::SteadyStart start,
+                   std::span<integrate::SteadyResponse> responses) override {
+    for (std::size_t i = 0; i < excitations.size(); ++i) solve(excitations[i], start, responses[i]);
+    widest = std::max(widest, static_cast<int>(excitations.size()));
+  }
+  integrate::Waveform waveform(int points) const override { return inner_->waveform(points); }
+  void forget() override { inner_->forget(); }
+
+  static inline int widest = 0;  ///< of all solvers: the most points side by side
+
+ private:
+  std::unique_ptr<integrate::SteadySolver> inner_;
+  std::function<void()> before_point_;
+  int lanes_;
+};
+
+SteadySolvers watched(const std::function<void()>& before_point, int lanes = 1) {
+  SteadySolvers solvers = stuck_sliders();
+  solvers.response = [=, make = solvers.stuck](const auto& system, const auto& request) {
+    return std::make_unique<WatchedSolver>(make(system, request), before_point, lanes);
+  };
+  return solvers;
+}
+
+/// Keeps the limits that it is given.
+class LimitKeeper final : public integrate::SteadySolver {
+ public:
+  explicit LimitKeeper(std::vector<double>& limits) : limits_(limits) {}
+  void solve(const integrate::Excitation& excitation, integrate::SteadyStart,
+             integrate::SteadyResponse& response) override {
+    limits_.push_back(excitation.limits[0]);
+    response.status = integrate::SteadyStatus::converged;
+    response.amplitude = response.velocity_amplitude = response.acceleration_amplitude = response.mean = response.rms =
+        Vector::Constant(1, excitation.limits[0]);
+    response.harmonics = integrate::ComplexMatrix::Zero(1, 1);
+    response.dissipated = response.slip_share = response.offset = Vector::Zero(1);
+  }
+  integrate::Waveform waveform(int) const override { return {}; }
+  void forget() override {}
+
+ private:
+  std::vector<double>& limits_;
+};
+
+struct MemoryJournal final : results::Journal {
+  std::vector<std::vector<double>> pieces;
+  long finished() const override { return static_cast<long>(pieces.size()); }
+  std::vector<double> read(long piece) override { return pieces.at(static_cast<std::size_t>(piece)); }
+  void keep(std::span<const double> values) override { pieces.emplace_back(values.begin(), values.end()); }
+};
+
 struct Run {
   MemorySink sink;
   RunReport report;
@@ -57,11 +121,13 @@ struct Run {
   }
 };
 
-std::unique_ptr<Run> run(const Prepared& prepared, const SteadySolvers& solvers = stuck_sliders(), int threads = 1) {
+const std::atomic<bool> never{false};
+
+std::unique_ptr<Run> run(const Prepared& prepared, const SteadySolvers& solvers = stuck_sliders(), int threads = 1,
+                         results::Journal* journal = nullptr, const std::atomic<bool>& stop = never) {
   auto result = std::make_unique<Run>();
   QuietProgress progress;
-  const std::atomic<bool> stop{false};
-  RunContext context{result->sink, progress, stop, threads};
+  RunContext context{result->sink, progress, stop, threads, journal};
   const FrequencyResponsePlan plan = prepared.plan();
   result->report = run_frequency_response("frf", plan, prepared.input(), solvers, context);
   return result;
@@ -126,6 +192,157 @@ TEST(FrequencyResponse, ShowsBothLimitsForEveryStructureOnce) {
     }
 }
 
+/// A grid of 60 lines of 600 points, which are cut into pieces.
+const std::string long_sweep =
+    "angular_frequency = { from = 0.5, to = 3, points = 600 }\n"
+    "sweep = { k = { from = 1, to = 4, points = 6 }, N0 = { from = 0, to = 3, points = 10 } }\n";
+
+TEST(FrequencyResponse, HasTheSameBitsForAnyNumberOfThreads) {
+  // With friction: the periodic solver continues from point to point.
+  const Prepared prepared(
+      one_mass("angular_frequency = { from = 0.5, to = 3, points = 300 }\nsweep = { k = [1, 2], N0 = [0, 0.5, 1] }\n"));
+  const SteadySolvers solvers = steady_solvers({});
+  const auto one = run(prepared, solvers, 1);
+  for (const int threads : {2, 5}) {
+    const auto several = run(prepared, solvers, threads);
+    EXPECT_EQ(several->table().rows, one->table().rows);
+    EXPECT_EQ(several->table("frf.linear").rows, one->table("frf.linear").rows);
+  }
+  EXPECT_EQ(one->table().rows.size(), 1800u);
+}
+
+TEST(FrequencyResponse, SolvesLinesOfOneStructureSideBySide) {
+  const Prepared prepared(one_mass(long_sweep));
+  WatchedSolver::widest = 0;
+  const auto lanes = run(prepared, watched([] {}, 4), 2);
+  EXPECT_EQ(WatchedSolver::widest, 4);
+  const auto alone = run(prepared, watched([] {}, 1), 2);
+  EXPECT_EQ(lanes->table().rows, alone->table().rows);
+  EXPECT_EQ(lanes->table("frf.linear").rows, alone->table("frf.linear").rows);
+}
+
+TEST(FrequencyResponse, ResumesWithTheSameBitsWhereItStopped) {
+  const Prepared prepared(one_mass(long_sweep));
+  const auto whole = run(prepared);
+  MemoryJournal journal;
+  std::atomic<bool> stop{false};
+  std::atomic<long> points{0};
+  const auto broken = run(prepared, watched([&] { stop = ++points > 20000; }), 2, &journal, stop);
+  EXPECT_EQ(broken->report.status, RunStatus::interrupted);
+  EXPECT_THAT(broken->report.message, HasSubstr("of 36000 points"));
+  // What was reached is there, in the same order.
+  ASSERT_GT(broken->table().rows.size(), 19000u);
+  ASSERT_LT(broken->table().rows.size(), 36000u);
+  points = 0;
+  const auto resumed = run(prepared, watched([&] { ++points; }), 2, &journal);
+  EXPECT_LT(points, 18000);
+  EXPECT_EQ(resumed->report.status, RunStatus::done);
+  EXPECT_EQ(resumed->table().rows, whole->table().rows);
+  EXPECT_EQ(resumed->table("frf.linear").rows, whole->table("frf.linear").rows);
+  EXPECT_EQ(resumed->report.statistics, whole->report.statistics);
+}
+
+TEST(FrequencyResponse, KeepsLoopsAtTheNearestPoints) {
+  const Prepared prepared(one_mass("angular_frequency = [0.5, 1.0, 1.5]\nwaveforms = { at = [0.9], points = 16 }\n"));
+  const auto result = run(prepared);
+  const auto& table = result->table("frf.waveforms");
+  ASSERT_EQ(table.rows.size(), 16u);
+  const std::complex<double> x = 1.0 / dynamic_stiffness(1.5, 1.0);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(result->at(i, "angular_frequency", "", "frf.waveforms"), 1.0);
+    const double t = 2.0 * std::numbers::pi * static_cast<double>(i) / 16.0;
+    const double expected = std::abs(x) * std::cos(t + std::arg(x));
+    EXPECT_NEAR(result->at(i, "time", "", "frf.waveforms"), t, 1e-15);
+    EXPECT_NEAR(result->at(i, "position", "mass", "frf.waveforms"), expected, 1e-14 * std::abs(x));
+    EXPECT_NEAR(result->at(i, "displacement", "contact", "frf.waveforms"), expected, 1e-14 * std::abs(x));
+    EXPECT_NEAR(result->at(i, "force", "contact", "frf.waveforms"), 0.5 * expected, 1e-14 * std::abs(x));
+  }
+}
+
+TEST(FrequencyResponse, ShowsTheBandsOfRandomSamples) {
+  // Below resonance the amplitude falls with k, so that its percentiles are the amplitudes at the percentiles of k; of
+  // 4001 samples in a Latin hypercube each lies within 1/4001 of the range [1, 2] from its place.
+  const Prepared prepared(one_mass(
+      "angular_frequency = [0.1]\nobserve = [\"mass\"]\nsweep = { samples = 4001, parameters = { k = { distribution = "
+      "\"uniform\", from = 1, to = 2 } } }\n"));
+  const auto result = run(prepared);
+  ASSERT_EQ(result->table().rows.size(), 4001u);
+  ASSERT_EQ(result->table("frf.bands").rows.size(), 1u);
+  for (const int percent : {5, 25, 50, 75, 95}) {
+    const double k = 2.0 - percent / 100.0;
+    const double expected = 1.0 / std::abs(dynamic_stiffness(k + 0.5, 0.1));
+    const std::string name = "amplitude_p" + std::string(percent < 10 ? "0" : "") + std::to_string(percent);
+    EXPECT_NEAR(result->at(0, name, "mass", "frf.bands"), expected, expected / 4001.0) << percent;
+  }
+  EXPECT_EQ(result->at(0, "missing", "", "frf.bands"), 0.0);
+}
+
+TEST(FrequencyResponse, SweepsUpAndThenDownWithItsMemory) {
+  const Prepared prepared(
+      one_mass("angular_frequency = [0.5, 1.0, 1.5]\nstart = \"previous\"\ndirection = \"both\"\n"));
+  const auto result = run(prepared);
+  std::vector<double> frequencies, directions;
+  for (std::size_t i = 0; i < 6; ++i) {
+    frequencies.push_back(result->at(i, "angular_frequency"));
+    directions.push_back(result->at(i, "direction"));
+  }
+  EXPECT_THAT(frequencies, ElementsAre(0.5, 1.0, 1.5, 1.5, 1.0, 0.5));
+  EXPECT_THAT(directions, ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_EQ(result->table("frf.linear").rows.size(), 3u);
+}
+
+TEST(FrequencyResponse, TakesFrequenciesInHertz) {
+  // A frequency [Hz] that the study gives to a parameter in rad/s, and to one in Hz.
+  const auto angular = run(Prepared(one_mass("frequency = [0.25]\n")));
+  const double omega = 2.0 * std::numbers::pi * 0.25, expected = 1.0 / std::abs(dynamic_stiffness(1.5, omega));
+  EXPECT_NEAR(angular->at(0, "amplitude", "mass"), expected, 1e-13 * expected);
+  std::string text = one_mass("frequency = [0.25]\n");
+  text.replace(text.find("angular_frequency = \"Omega\""), 27, "frequency = \"Omega\"");
+  const auto hertz = run(Prepared(text));
+  EXPECT_NEAR(hertz->at(0, "amplitude", "mass"), expected, 1e-13 * expected);
+  EXPECT_EQ(hertz->at(0, "angular_frequency"), omega);
+}
+
+TEST(FrequencyResponse, AddsHarmonicsAndStaticLoadsOfSeveralForces) {
+  std::string text = one_mass("angular_frequency = [0.4]\nharmonics = [1, 3]\n");
+  text.insert(text.find("[[analysis]]"),
+              "[[force]]\non = \"mass\"\namplitude = 0.5\nangular_frequency = \"3 * Omega\"\nphase = 0.7\n"
+              "[[force]]\non = \"mass\"\namplitude = 0.3\nangular_frequency = 0\n");
+  const auto result = run(Prepared(text));
+  const std::complex<double> third = std::polar(0.5, 0.7) / dynamic_stiffness(1.5, 1.2);
+  EXPECT_NEAR(result->at(0, "harmonic3_amplitude", "mass"), std::abs(third), 1e-14);
+  EXPECT_NEAR(result->at(0, "harmonic3_phase", "mass"), std::arg(third), 1e-13);
+  EXPECT_NEAR(result->at(0, "mean", "mass"), 0.3 / 1.5, 1e-15);
+}
+
+TEST(FrequencyResponse, BuildsTheModelAgainWhereItsStructureFollowsTheSpeed) {
+  // A spring stiffened by rotation.
+  std::string text = one_mass("angular_frequency = [0.5, 2.0]\n");
+  text.replace(text.find("stiffness = \"k\""), 15, "stiffness = \"k + 3 * Omega^2\"");
+  const auto result = run(Prepared(text));
+  for (const std::size_t row : {0u, 1u}) {
+    const double omega = row == 0 ? 0.5 : 2.0;
+    const double expected = 1.0 / std::abs(dynamic_stiffness(1.5 + 3.0 * omega * omega, omega));
+    EXPECT_NEAR(result->at(row, "amplitude", "mass"), expected, 1e-14 * expected);
+  }
+}
+
+TEST(FrequencyResponse, LetsParametersFollowThoseThatAreSwept) {
+  // preload = 2 N0 is a formula; --set would replace it.
+  const std::string text =
+      one_mass("angular_frequency = [1]\nsweep = { N0 = [1, 3] }\n", "preload = \"2 * N0\"\n", "1.0", "\"preload\"");
+  std::vector<double> limits;
+  SteadySolvers solvers = stuck_sliders();
+  solvers.response = [&](const auto&, const auto&) { return std::make_unique<LimitKeeper>(limits); };
+  (void)run(Prepared(text), solvers);
+  EXPECT_THAT(limits, ElementsAre(1.0, 3.0));  // mu = 0.5
+  limits.clear();
+  std::string unused = text;
+  unused.replace(unused.find("stiffness = 0.5"), 15, "stiffness = \"0.5 * N0\"");
+  (void)run(Prepared(unused, {{"preload", 8.0}}), solvers);
+  EXPECT_THAT(limits, ElementsAre(4.0, 4.0));
+}
+
 TEST(FrequencyResponse, LetsTheForceGrowWithTheFrequency) {
   // An unbalance m e Omega^2.
   const auto result = run(Prepared(one_mass("angular_frequency = [0.5, 2.0]\n", "", "\"0.3 * Omega^2\"")));
@@ -149,26 +366,6 @@ TEST(FrequencyResponse, TakesTheSpeedOfARotorWithItsEngineOrderAndPreload) {
     EXPECT_NEAR(result->at(row, "amplitude", "mass"), expected, 1e-14 * expected);
   }
 }
-
-/// Keeps the limits that it is given.
-class LimitKeeper final : public integrate::SteadySolver {
- public:
-  explicit LimitKeeper(std::vector<double>& limits) : limits_(limits) {}
-  void solve(const integrate::Excitation& excitation, integrate::SteadyStart,
-             integrate::SteadyResponse& response) override {
-    limits_.push_back(excitation.limits[0]);
-    response.status = integrate::SteadyStatus::converged;
-    response.amplitude = response.velocity_amplitude = response.acceleration_amplitude = response.mean = response.rms =
-        Vector::Constant(1, excitation.limits[0]);
-    response.harmonics = integrate::ComplexMatrix::Zero(1, 1);
-    response.dissipated = response.slip_share = response.offset = Vector::Zero(1);
-  }
-  integrate::Waveform waveform(int) const override { return {}; }
-  void forget() override {}
-
- private:
-  std::vector<double>& limits_;
-};
 
 TEST(FrequencyResponse, TiesThePreloadToTheSpeedAndCountsNegativeOnesAsZero) {
   const Prepared prepared(one_mass("angular_frequency = [1, 2, 3]\n", "", "1.0", "\"2 * Omega^2 - 4\""));

@@ -156,6 +156,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
         is_new_line = false;
       }
       mine.drive->take_point(point, excitation);
+      solver_->solve(excitation, plan_.start, response);
     } catch (const InvalidInput&) {
       tables_.main.add_impossible(place_of(mine, step), result.main);
       result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
@@ -163,7 +164,6 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
       points_done_.fetch_add(1, std::memory_order_relaxed);
       continue;
     }
-    solver_->solve(excitation, plan_.start, response);
     finish_point(mine, piece.first_line, step, excitation, response, result);
     if (plan_.waveform_points > 0 && plan_.waveform_at[plan_.steps[step].frequency])
       tables_.waveforms.add(place_of(mine, step), solver_->waveform(plan_.waveform_points), result.waveforms);
@@ -224,6 +224,8 @@ std::string PieceSolver::reason(long line, std::size_t step) {
     require_structure(mine, point_value(step));
     mine.drive->take_line(mine.values, *structure_);
     mine.drive->take_point(point_value(step), excitations_[0]);
+    solver_->forget();
+    solver_->solve(excitations_[0], plan_.start, responses_[0]);
   } catch (const InvalidInput& fault) {
     return fault.what();
   }
