@@ -74,7 +74,7 @@ Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& in
                         {"start", start_name(plan.start)},
                         {"excitation", input.parameters[plan.excitation].first},
                         {"sweep", sweep_name(plan.sweep.kind())},
-                        {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
+                        {"swept", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
                         {"frequencies", std::to_string(plan.frequencies.size())},
                         {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
@@ -87,6 +87,12 @@ std::vector<Block> slider_blocks(const std::vector<std::string>& sliders) {
   return {{"dissipated", "J", "friction work over a period", "slider", sliders},
           {"slip_share", "1", "share of the period in which it slips", "slider", sliders},
           {"offset", "N", "force at rest of a slider that never slips, fc - kT u", "slider", sliders}};
+}
+
+/// In (-pi, pi]: the argument of -1 - 0i would be -pi.
+double phase_of(const std::complex<double>& harmonic) {
+  const double phase = std::arg(harmonic);
+  return phase == -std::numbers::pi ? std::numbers::pi : phase;
 }
 
 void append(const Vector& values, std::vector<double>& rows) {
@@ -206,11 +212,7 @@ void ResponseTable::add(const RowPlace& place, double fundamental, const integra
   for (Index k = 0; k < response.harmonics.cols(); ++k) {
     if (k > 0)
       for (Index i = 0; i < response.harmonics.rows(); ++i) rows.push_back(std::abs(response.harmonics(i, k)));
-    // The argument of -1 - 0i would be -pi; phases lie in (-pi, pi].
-    for (Index i = 0; i < response.harmonics.rows(); ++i) {
-      const double phase = std::arg(response.harmonics(i, k));
-      rows.push_back(phase == -std::numbers::pi ? std::numbers::pi : phase);
-    }
+    for (Index i = 0; i < response.harmonics.rows(); ++i) rows.push_back(phase_of(response.harmonics(i, k)));
   }
   append(response.mean, rows);
   append(response.rms, rows);
@@ -237,26 +239,24 @@ LinearTable::LinearTable(const std::string& name, const FrequencyResponsePlan& p
     : layout_{name, "linear", "point", {}, {{"type", "frequency_response_linear"}}}, is_linear_(plan.is_linear) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, is_linear_, blocks);
+  blocks.push_back({"limit", "", "without sliders, or with all of them stuck", "", {}, {"free", "stuck"}});
   blocks.push_back(angular_frequency());
   const auto labels = labels_of(plan.observed);
   if (!labels.empty()) {
-    blocks.push_back({"free_amplitude", "m", "half peak to peak without sliders", "coordinate", labels});
-    blocks.push_back({"free_phase", "rad", "phase of its first harmonic", "coordinate", labels});
-    blocks.push_back({"stuck_amplitude", "m", "half peak to peak with all sliders stuck", "coordinate", labels});
-    blocks.push_back({"stuck_phase", "rad", "phase of its first harmonic", "coordinate", labels});
+    blocks.push_back({"amplitude", "m", "half peak to peak of the displacement", "coordinate", labels});
+    blocks.push_back({"phase", "rad", "phase of harmonic 1, A cos(omega t + phase)", "coordinate", labels});
   }
   width_ = layout_.row_width();
 }
 
-void LinearTable::add(const RowPlace& place, const integrate::SteadyResponse& free,
-                      const integrate::SteadyResponse& stuck, std::vector<double>& rows) const {
+void LinearTable::add(const RowPlace& place, bool is_stuck, const integrate::SteadyResponse& limit,
+                      std::vector<double>& rows) const {
   for (std::size_t i = 0; i < place.line.size(); ++i)
     if (is_linear_[i]) rows.push_back(place.line[i]);
+  rows.push_back(is_stuck ? 1.0 : 0.0);
   rows.push_back(place.angular_frequency);
-  for (const auto* limit : {&free, &stuck}) {
-    append(limit->amplitude, rows);
-    for (Index i = 0; i < limit->harmonics.rows(); ++i) rows.push_back(std::arg(limit->harmonics(i, 0)));
-  }
+  append(limit.amplitude, rows);
+  for (Index i = 0; i < limit.harmonics.rows(); ++i) rows.push_back(phase_of(limit.harmonics(i, 0)));
 }
 
 WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
@@ -308,10 +308,9 @@ BandTable::BandTable(const std::string& name, const FrequencyResponsePlan& plan)
   if (plan.has_both_directions) blocks.push_back(direction());
   blocks.push_back(angular_frequency());
   const auto labels = labels_of(plan.observed);
+  blocks.push_back(scalar("percentile", "1", "how many percent of the samples lie below"));
   if (!labels.empty())
-    for (const int percent : percents)
-      blocks.push_back({fmt::format("amplitude_p{:02}", percent), "m",
-                        fmt::format("amplitude below which {} % of the samples lie", percent), "coordinate", labels});
+    blocks.push_back({"amplitude", "m", "amplitude below which so many samples lie", "coordinate", labels});
   blocks.push_back(scalar("missing", "1", "samples without an amplitude here"));
 }
 
@@ -330,13 +329,15 @@ void BandTable::write(results::RowWriter& writer) {
   const std::size_t width = plan_.observed.size();
   std::vector<double> row;
   for (std::size_t step = 0; step < plan_.steps.size(); ++step) {
-    row.clear();
-    if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
-    row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
-    for (const int percent : percents)
+    for (const int percent : percents) {
+      row.clear();
+      if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
+      row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
+      row.push_back(percent);
       for (std::size_t i = 0; i < width; ++i) row.push_back(percentile(values_[step * width + i], percent / 100.0));
-    row.push_back(missing_[step]);
-    writer.append(row);
+      row.push_back(missing_[step]);
+      writer.append(row);
+    }
   }
 }
 

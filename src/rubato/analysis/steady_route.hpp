@@ -28,8 +28,8 @@ struct SteadySolvers {
   Make free, stuck;  ///< the two linear limits
 };
 
-/// The solvers of a route. A system without sliders is linear: its response is that of the free limit, whatever the
-/// route.
+/// The solvers of a route. A system without sliders is linear: unless it is marched, its response is that of the free
+/// limit.
 SteadySolvers steady_solvers(const SteadyRoute& route);
 
 }  // namespace rubato::analysis
