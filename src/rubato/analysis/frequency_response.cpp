@@ -8,7 +8,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <mutex>
 #include <optional>
 
 namespace rubato::analysis {
@@ -113,21 +112,6 @@ class Tables {
   std::vector<double> held_;  ///< rows of the second limit, until the first has all of its line
 };
 
-/// Tells progress from whichever thread finishes a point, a few times a second at most for each.
-class SharedProgress {
- public:
-  SharedProgress(Progress& progress, const std::atomic<long>& points) : progress_(progress), points_(points) {}
-  void tell() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock) progress_.advance(static_cast<double>(points_.load(std::memory_order_relaxed)));
-  }
-
- private:
-  Progress& progress_;
-  const std::atomic<long>& points_;
-  std::mutex mutex_;
-};
-
 /// "N0 = 10, angular_frequency = 7.5 rad/s"
 std::string place_of(const FrequencyResponsePlan& plan, double point) {
   const auto steps = static_cast<double>(plan.steps.size());
@@ -182,18 +166,16 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
 RunReport run_frequency_response(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input,
                                  const SteadySolvers& solvers, RunContext& context) {
   const SweepTables layouts{{name, plan, input}, {name, plan}, {name, plan, input}};
-  std::atomic<long> points_done{0};
+  context.progress.begin(name, plan.points(), "points");
+  SweepProgress progress(context.progress, input.system.size() > 100 ? 1 : 64);
   tbb::enumerable_thread_specific<std::unique_ptr<PieceSolver>> workers;
   const auto worker = [&]() -> PieceSolver& {
     auto& mine = workers.local();
-    if (!mine) mine = std::make_unique<PieceSolver>(plan, input, solvers, layouts, points_done, context.stop);
+    if (!mine) mine = std::make_unique<PieceSolver>(plan, input, solvers, layouts, progress, context.stop);
     return *mine;
   };
-  const int lanes = solvers.response(input.system, plan.request)->lanes();
   Tables tables(name, plan, layouts, context.sink);
-  Pieces pieces(plan, lanes);
-  SharedProgress progress(context.progress, points_done);
-  context.progress.begin(name, plan.points(), "points");
+  Pieces pieces(plan, worker().lanes());
 
   bool was_interrupted = false;
   const long known = context.journal ? context.journal->finished() : 0;
@@ -202,7 +184,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
     if (!piece) break;
     const PieceResult result = PieceResult::unpacked(*piece, context.journal->read(i));
     tables.write(result);
-    points_done += static_cast<long>(result.counts.points());
+    progress.add(static_cast<long>(result.counts.points()));
   }
 
   const int threads = context.threads > 0 ? context.threads : tbb::task_arena::automatic;
@@ -223,7 +205,6 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
           return result;
         }) & tbb::make_filter<Shared, Shared>(tbb::filter_mode::parallel, [&](Shared result) {
           *result = worker().solve(result->piece);
-          progress.tell();
           return result;
         }) & tbb::make_filter<Shared, void>(tbb::filter_mode::serial_in_order, [&](const Shared& result) {
           tables.write(*result);
@@ -241,6 +222,11 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
   if (counts.points() < plan.points()) {
     report.status = RunStatus::interrupted;
     report.message = fmt::format("interrupted after {:.0f} of {:.0f} points", counts.points(), plan.points());
+  } else if (const double lost = counts.by_status[static_cast<std::size_t>(PointStatus::not_converged)] +
+                                 counts.by_status[static_cast<std::size_t>(PointStatus::impossible)];
+             lost == counts.points()) {
+    report.status = RunStatus::failed;
+    report.message = "no point was solved; the warnings and the column `status` say why";
   }
   report.statistics = {{"points", fmt::format("{:.0f}", counts.points())}};
   for (std::size_t i = 0; i < point_statuses; ++i)

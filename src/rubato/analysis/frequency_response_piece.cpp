@@ -53,8 +53,8 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const doubl
 }
 
 PieceSolver::PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
-                         const SweepTables& tables, std::atomic<long>& points_done, const std::atomic<bool>& stop)
-    : plan_(plan), input_(input), make_(solvers), tables_(tables), points_done_(points_done), stop_(stop) {}
+                         const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop)
+    : plan_(plan), input_(input), make_(solvers), tables_(tables), progress_(progress), stop_(stop) {}
 
 PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
   while (lanes_.size() <= index) {
@@ -135,7 +135,7 @@ void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, co
   }
   // Both directions have the same limits.
   if (lane.has_limits && step < plan_.frequencies.size()) solve_linear(place, excitation, result);
-  points_done_.fetch_add(1, std::memory_order_relaxed);
+  progress_.add(1);
 }
 
 void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
@@ -163,7 +163,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
       tables_.main.add_impossible(place_of(mine, step), result.main);
       result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
       if (result.counts.first_impossible < 0.0) result.counts.first_impossible = point_number(piece.first_line, step);
-      points_done_.fetch_add(1, std::memory_order_relaxed);
+      progress_.add(1);
       continue;
     }
     finish_point(mine, piece.first_line, step, excitation, response, result);
@@ -198,7 +198,7 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
   } catch (const InvalidInput&) {
     double points = 0.0;
     for (std::size_t i = 0; i < count; ++i) points += lanes_[i].result.counts.points();
-    points_done_.fetch_sub(static_cast<long>(points), std::memory_order_relaxed);
+    progress_.add(-static_cast<long>(points));
     return false;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -222,6 +222,17 @@ PieceResult PieceSolver::solve(const SweepPiece& piece) {
     result.held.clear();
   }
   return result;
+}
+
+int PieceSolver::lanes() {
+  Lane& mine = lane(0);
+  take_line(mine, 0);
+  try {
+    require_structure(mine, point_value(0));
+  } catch (const InvalidInput&) {
+    return 1;
+  }
+  return solver_->lanes();
 }
 
 std::string PieceSolver::reason(long line, std::size_t step) {

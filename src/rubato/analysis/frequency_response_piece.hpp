@@ -2,10 +2,12 @@
 
 #include <rubato/analysis/frequency_response_tables.hpp>
 #include <rubato/analysis/parametric_excitation.hpp>
+#include <rubato/analysis/run_context.hpp>
 
 #include <array>
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -50,14 +52,38 @@ struct SweepTables {
   WaveformTable waveforms;
 };
 
+/// Counts finished points over all threads and tells of them, from whichever thread is free to.
+class SweepProgress {
+ public:
+  /// @param points_a_report  1 where a point takes long
+  SweepProgress(Progress& progress, long points_a_report) : progress_(progress), points_a_report_(points_a_report) {}
+  /// `count` may be negative: points that are solved again.
+  void add(long count) {
+    const long now = points_.fetch_add(count, std::memory_order_relaxed) + count;
+    if (now % points_a_report_ == 0) tell();
+  }
+
+ private:
+  void tell() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock) progress_.advance(static_cast<double>(points_.load(std::memory_order_relaxed)));
+  }
+  Progress& progress_;
+  long points_a_report_;
+  std::atomic<long> points_{0};
+  std::mutex mutex_;
+};
+
 /// Solves pieces of a sweep; what it answers for a piece does not depend on the pieces before. One a thread.
 class PieceSolver {
  public:
-  /// @param points_done  grows as points are finished   @param stop  asks to leave at the next point
+  /// @param stop  asks to leave at the next point
   PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
-              const SweepTables& tables, std::atomic<long>& points_done, const std::atomic<bool>& stop);
+              const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop);
 
   PieceResult solve(const SweepPiece& piece);
+  /// How many points the solver of the first line takes side by side.
+  int lanes();
   /// What is wrong with a point that no model can have; empty if nothing is.
   std::string reason(long line, std::size_t step);
   /// The sliders with a negative load at a point.
@@ -87,7 +113,7 @@ class PieceSolver {
   const StudyInput& input_;
   const SteadySolvers& make_;
   const SweepTables& tables_;
-  std::atomic<long>& points_done_;
+  SweepProgress& progress_;
   const std::atomic<bool>& stop_;
 
   std::vector<Lane> lanes_;

@@ -177,10 +177,7 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
     if (description.max_periods) refuse(description.max_periods->where, "max_periods");
     return;
   }
-  model::MethodDescription method;
-  method.name = "exponential";
-  if (description.method) method = *description.method;
-  plan.route.method = method_of(method, input.parameters);
+  plan.route.method = method_of(description.method.value_or(model::MethodDescription{}), input.parameters);
   if (description.steps_per_period)
     plan.route.steps_per_period =
         whole_number(*description.steps_per_period, 4, input.parameters, title + "steps_per_period", where);

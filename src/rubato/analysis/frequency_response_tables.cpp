@@ -44,11 +44,6 @@ Block direction() { return {"direction", "", "which way the frequency goes", "",
 
 Block angular_frequency() { return scalar("angular_frequency", "rad/s", "angular frequency of the excitation"); }
 
-std::string route_name(SteadyRoute::Kind kind) {
-  if (kind == SteadyRoute::Kind::harmonic_balance) return "harmonic_balance";
-  return kind == SteadyRoute::Kind::time_marching ? "time_marching" : "periodic";
-}
-
 std::string start_name(integrate::SteadyStart start) {
   if (start == integrate::SteadyStart::previous) return "previous";
   return start == integrate::SteadyStart::rest ? "rest" : "unloaded";

@@ -50,7 +50,8 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
   result.expected_bytes = 36.0 *  // 8 of them in the journal
                           (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
-  result.summary = fmt::format("frequency response, {} lines of {} points", plan.sweep.lines(), plan.steps.size());
+  result.summary = fmt::format("frequency response, {}, {} lines of {} points", route_name(plan.route.kind),
+                               plan.sweep.lines(), plan.steps.size());
   return result;
 }
 

@@ -42,6 +42,11 @@ std::unique_ptr<integrate::SteadySolver> time_marching(const SteadyRoute& route,
 
 }  // namespace
 
+std::string route_name(SteadyRoute::Kind kind) {
+  if (kind == SteadyRoute::Kind::harmonic_balance) return "harmonic_balance";
+  return kind == SteadyRoute::Kind::time_marching ? "time_marching" : "periodic";
+}
+
 SteadySolvers steady_solvers(const SteadyRoute& route) {
   SteadySolvers solvers;
   solvers.free = [](const LocallyNonlinear& system, const SteadyRequest& request) {

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 namespace rubato::analysis {
 
@@ -19,6 +20,9 @@ struct SteadyRoute {
   long steps_per_period = 0;  ///< 0: chosen by the error
   long max_periods = 0;       ///< 0: the route's own
 };
+
+/// As the study file calls it.
+std::string route_name(SteadyRoute::Kind kind);
 
 /// Makes solvers of steady responses for one structure after another.
 struct SteadySolvers {
