@@ -16,7 +16,8 @@ struct TimeMarchingOptions {
   double periodicity = 0.0;  ///< of the states one period apart, relative [-]; 0: a hundredth of the tolerance
   int max_periods = 1000;    ///< of one march
   int max_steps = 1 << 15;   ///< in a period, where they are chosen
-  bool extrapolates = true;  ///< see PeriodExtrapolation; never used with SteadyStart::rest
+  bool extrapolates = true;  ///< see OrbitExtrapolation; never used with SteadyStart::rest
+  bool uses_lanes = true;    ///< small models in lanes (see make_lane_map), where the method allows
 };
 
 /// Steady responses by marching a method until the response repeats (see docs/theory/time-marching.md).
@@ -29,6 +30,7 @@ struct TimeMarchingOptions {
 /// Status: converged; not_converged (no repetition within max_periods, or max_steps too few for the tolerance);
 /// subharmonic and quasi_periodic, found where nothing is extrapolated; unbounded where the motion grows in proportion
 /// to time. `error` is that of the step and of the rest of the transient together; NaN where it cannot be estimated.
+/// Work with the sums of a ledger: average acceleration closes the balance of energy to round-off.
 class TimeMarchingSolver final : public SteadySolver {
  public:
   /// The system must outlive the solver. Throws InvalidInput for the method `exact`, for a method without a stable
@@ -38,6 +40,11 @@ class TimeMarchingSolver final : public SteadySolver {
 
   /// Throws InvalidInput where the given number of steps is below least_steps.
   void solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
+  /// 16 for small models and methods of the alpha family or the exponential one, else 1. The lanes share their step.
+  int lanes() const override;
+  void solve_lanes(std::span<const Excitation> excitations, SteadyStart start,
+                   std::span<SteadyResponse> responses) override;
+  /// Of the last point solved (the last of a list).
   Waveform waveform(int points) const override;
   void forget() override;
 
@@ -47,21 +54,28 @@ class TimeMarchingSolver final : public SteadySolver {
   int steps() const { return steps_; }
 
  private:
-  struct Memory;
-  int first_steps(const Excitation& excitation) const;
-  void start_states(const Excitation& excitation, SteadyStart start, LaneArray& states);
-  void find(const Excitation& excitation, SteadyStart start, int steps, LaneArray& states, SteadyResponse& response);
-  bool release_offsets(const Excitation& excitation, const SteadyResponse& response, LaneArray& states) const;
+  struct Place;
+  struct Engine;
+  int first_steps(const Engine& engine, std::span<const Excitation> excitations) const;
+  bool solve_with(Engine& engine, std::span<const Excitation> excitations, SteadyStart start,
+                  std::span<SteadyResponse> responses);
+  void start_states(Engine& engine, std::span<const Excitation> excitations, SteadyStart start,
+                    LaneArray& states) const;
+  /// Responses with a given number of steps, from `states`, which become the starts of their periods. `is_full`: with
+  /// all that was asked for, else amplitudes alone.
+  void find(Engine& engine, std::span<const Excitation> excitations, SteadyStart start, int steps, bool is_full,
+            LaneArray& states, std::span<SteadyResponse> responses) const;
+  bool release_offsets(const Engine& engine, Index lane, const Excitation& excitation, const SteadyResponse& response,
+                       LaneArray& states) const;
 
   const system::LocallyNonlinear& system_;
   TimeMarchingOptions options_;
-  SteadyRequest request_;
+  SteadyRequest request_, amplitudes_;
   double stable_step_;
   int order_;
   Vector slider_stiffness_;
-  std::unique_ptr<PeriodMap> map_;
-  std::vector<PeriodRecord> records_;
-  std::unique_ptr<Memory> memory_;
+  std::unique_ptr<Engine> lanes_, steppers_;  // lanes_ may be null
+  const Engine* last_ = nullptr;
   int steps_ = 0;
 };
 
