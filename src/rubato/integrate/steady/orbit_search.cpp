@@ -111,6 +111,16 @@ class Lane {
   double best_ = infinity;
 };
 
+// A slider that did not slip in the period keeps its slip: what is learnt from others is none of its business.
+void keep_slips(const PeriodMap& map, const LaneArray& after, const LaneArray& residuals, LaneArray& steps) {
+  constexpr double still = 1e-12;
+  for (Index l = 0; l < steps.cols(); ++l) {
+    const double scale = after.col(l).head(map.slip_start()).matrix().norm();
+    for (Index i = map.slip_start(); i < map.slip_start() + map.slips(); ++i)
+      if (std::abs(residuals(i, l)) <= still * scale) steps(i, l) = 0.0;
+  }
+}
+
 }  // namespace
 
 std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions& options,
@@ -126,7 +136,10 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
       break;
     }
     residuals = after - states;
-    if (extrapolation) extrapolation->next(states, residuals, steps);
+    if (extrapolation) {
+      extrapolation->next(states, residuals, steps);
+      keep_slips(map, after, residuals, steps);
+    }
     bool is_done = true;
     for (Index l = 0; l < count; ++l) {
       Lane& lane = lanes[static_cast<std::size_t>(l)];
