@@ -1,11 +1,16 @@
 #include <rubato/integrate/steady/time_marching.hpp>
 
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/steady/quasi_periodic.hpp>
+
 #include <support/models.hpp>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace rubato::integrate {
 namespace {
@@ -178,6 +183,206 @@ TEST(TimeMarching, SaysThatAnUndampedResonanceGrowsWithoutBound) {
     const auto response = response_of(system, with_method("exponential", 1e-3, 64), observing({0}), start);
     EXPECT_EQ(response.status, SteadyStatus::unbounded);
   }
+}
+
+TEST(TimeMarching, FollowsPointsSideBySideAsOneByOne) {
+  const auto system = damper_model(10.0, 7.5, -8.0);
+  const std::array<double, 9> preloads = {0, 5, 10, 25, 50, 100, 200, 500, 1000};
+  for (const char* method : {"exponential", "average_acceleration"}) {
+    SCOPED_TRACE(method);
+    auto options = with_method(method, 1e-3, 96);
+    options.periodicity = 1e-10;  // so that what is left of the transients differs by less than what is asserted
+    TimeMarchingSolver together(system, options, observing({1, 3}));
+    std::vector<Excitation> points(preloads.size(), excitation_of(system));
+    std::vector<SteadyResponse> responses(preloads.size());
+    ASSERT_GE(together.lanes(), 9);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].limits.setConstant(0.5 * preloads[i]);
+    for (const double omega : {7.5, 7.55, 7.6}) {
+      for (Excitation& point : points) point.angular_frequency = omega;
+      together.solve_lanes(points, SteadyStart::previous, responses);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      SCOPED_TRACE(preloads[i]);
+      TimeMarchingSolver alone(system, options, observing({1, 3}));
+      SteadyResponse response;
+      alone.solve(points[i], SteadyStart::unloaded, response);
+      EXPECT_EQ(responses[i].status, SteadyStatus::converged);
+      EXPECT_EQ(responses[i].transitions, response.transitions);
+      for (Index k = 0; k < 2; ++k) {
+        EXPECT_NEAR(responses[i].amplitude[k], response.amplitude[k], 1e-7 * response.amplitude[k]);
+        EXPECT_NEAR(std::abs(responses[i].harmonics(k, 0) - response.harmonics(k, 0)), 0.0, 1e-7);
+        EXPECT_NEAR(responses[i].acceleration_amplitude[k], response.acceleration_amplitude[k], 1e-5 * 64.0);
+      }
+    }
+  }
+}
+
+TEST(TimeMarching, SaysHowFarItsAmplitudesAreFromTheExactOnes) {
+  // Over a coarse grid of preloads and frequencies, against 2048 steps a period: errors some 300 times smaller.
+  const auto system = damper_model(10.0, 7.5, -8.0);
+  TimeMarchingSolver reference(system, with_method("exponential", 1e-3, 2048), observing({1, 3}));
+  for (const double preload : {5.0, 50.0, 200.0}) {
+    std::vector<Excitation> points;
+    std::vector<Vector> exact;
+    SteadyResponse response;
+    for (double omega = 6.0; omega < 9.01; omega += 0.25) {
+      points.push_back(excitation_of(system));
+      points.back().angular_frequency = omega;
+      points.back().limits.setConstant(0.5 * preload);
+      reference.solve(points.back(), SteadyStart::previous, response);
+      exact.push_back(response.amplitude);
+    }
+    for (const char* method : {"exponential", "generalized_alpha", "rk4"}) {
+      SCOPED_TRACE(method);
+      TimeMarchingSolver solver(system, with_method(method), observing({1, 3}));
+      int worse_than_said = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        solver.solve(points[i], SteadyStart::previous, response);
+        const double error = (response.amplitude - exact[i]).cwiseAbs().maxCoeff() / exact[i].maxCoeff();
+        EXPECT_EQ(response.status, SteadyStatus::converged);
+        EXPECT_LE(response.error, 1e-3);
+        EXPECT_LE(error, 1e-3);
+        worse_than_said += error > response.error ? 1 : 0;
+      }
+      // It is an estimate, cautious but no bound.
+      EXPECT_LE(worse_than_said, 1);
+    }
+  }
+}
+
+TEST(TimeMarching, AgreesAcrossFamiliesOnRandomModels) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> real(0.0, 1.0);
+  for (int sample = 0; sample < 40; ++sample) {
+    SCOPED_TRACE(sample);
+    const Index n = 2 + sample % 5, m = 1 + sample % 4;
+    system::LocallyNonlinear::Parts parts;
+    Matrix a = Matrix::NullaryExpr(n, n, [&] { return real(random) - 0.5; });
+    const Matrix k = 4.0 * Matrix::Identity(n, n) + a * a.transpose() * 8.0;
+    Matrix b = Matrix::NullaryExpr(n, n, [&] { return real(random) - 0.5; });
+    parts.mass = testing::sparse(Matrix::Identity(n, n) * (0.5 + real(random)));
+    parts.damping = testing::sparse(0.02 * k + 0.1 * b * b.transpose());  // couples the modes
+    parts.stiffness = testing::sparse(k);
+    for (Index i = 0; i < m; ++i)
+      parts.sliders.push_back({"s" + std::to_string(i), i % n, i % 2 == 0 ? ground : (i + 1) % n,
+                               1.0 + 5.0 * real(random), 0.05 + real(random)});
+    const double omega = 1.0 + 3.0 * real(random);
+    parts.loads =
+        system::Loads({harmonic(0, 1.0, omega, 6.0 * real(random)), harmonic(n - 1, real(random), 2.0 * omega),
+                       harmonic(n / 2, real(random), 0.0), harmonic(n / 2, 0.3, 3.0 * omega, 1.0)});
+    for (Index i = 0; i < n; ++i) parts.coordinates.push_back("x" + std::to_string(i));
+    const system::LocallyNonlinear system(std::move(parts));
+    const auto request = observing({0, n - 1});
+    const auto alpha = response_of(system, with_method("generalized_alpha"), request);
+    const auto exponential = response_of(system, with_method("exponential"), request);
+    ASSERT_EQ(alpha.status, SteadyStatus::converged);
+    ASSERT_EQ(exponential.status, SteadyStatus::converged);
+    const double size = exponential.amplitude.maxCoeff();
+    EXPECT_NEAR(alpha.amplitude[0], exponential.amplitude[0], (alpha.error + exponential.error) * size);
+    EXPECT_NEAR(alpha.amplitude[1], exponential.amplitude[1], (alpha.error + exponential.error) * size);
+    EXPECT_NEAR(alpha.input_work, alpha.viscous_work + alpha.dissipated.sum(), 0.01 * alpha.input_work);
+  }
+}
+
+TEST(TimeMarching, FindsAChainOfManySlidersByTheSteppersToo) {
+  // Forty coordinates: beyond the lanes, and beyond Broyden's matrix.
+  const auto system = testing::chain(40, 12, 0.5);
+  auto options = with_method("average_acceleration", 1e-3);
+  options.periodicity = 1e-7;
+  const auto mixed = response_of(system, options, observing({13, 20}));
+  ASSERT_EQ(mixed.status, SteadyStatus::converged);
+  options.extrapolates = false;
+  const auto marched = response_of(system, options, observing({13, 20}));
+  EXPECT_EQ(marched.status, SteadyStatus::converged);
+  EXPECT_NEAR(mixed.amplitude[0], marched.amplitude[0], (mixed.error + marched.error) * marched.amplitude.maxCoeff());
+  EXPECT_LT(mixed.iterations, marched.iterations);
+}
+
+TEST(TimeMarching, RepeatsOneWaveformInItsNumbers) {
+  const auto system = damper_model(34.7788, 7.7, -8.0);
+  for (const bool uses_lanes : {true, false}) {
+    auto options = with_method("average_acceleration", 1e-3, 400);
+    options.uses_lanes = uses_lanes;
+    TimeMarchingSolver solver(system, options, observing({1}));
+    SteadyResponse response;
+    solver.solve(excitation_of(system), SteadyStart::unloaded, response);
+    const Waveform waveform = solver.waveform(1000);
+    const auto blade = waveform.position.row(1);
+    // Half peak to peak of 1000 samples misses the peak by (pi/1000)^2/2 at most.
+    EXPECT_NEAR(0.5 * (blade.maxCoeff() - blade.minCoeff()), response.amplitude[0], 2e-5 * response.amplitude[0]);
+    // Friction work is the area of the loop that the samples draw.
+    const double limit = 0.5 * 34.7788;
+    double area = 0.0;
+    for (Index i = 0; i < 1000; ++i) {
+      const Index next = (i + 1) % 1000;
+      area += 0.5 * (waveform.slider_force(0, i) + waveform.slider_force(0, next)) *
+              (waveform.displacement(0, next) - waveform.displacement(0, i));
+    }
+    EXPECT_NEAR(area, response.dissipated[0], 1e-3 * response.dissipated[0]);
+    EXPECT_LE(waveform.slider_force.cwiseAbs().maxCoeff(), limit);
+  }
+}
+
+TEST(TimeMarching, KeepsExplicitMethodsToTheirStableStep) {
+  // The highest mode with the sliders stuck, 8.344 rad/s, allows 2/8.344 s to the central difference.
+  const auto system = damper_model(10.0, 1.0);
+  TimeMarchingSolver solver(system, with_method("central_difference"), observing({1}));
+  const int least = solver.least_steps(1.0);
+  EXPECT_GE(least, 2.0 * std::numbers::pi / (2.0 / 8.344109053436982));
+  EXPECT_LE(least, 1.2 * 2.0 * std::numbers::pi / (2.0 / 8.344109053436982));
+  SteadyResponse response;
+  solver.solve(excitation_of(system), SteadyStart::unloaded, response);
+  EXPECT_EQ(response.status, SteadyStatus::converged);
+  TimeMarchingSolver coarse(system, with_method("central_difference", 1e-3, least - 1), observing({1}));
+  EXPECT_THROW(coarse.solve(excitation_of(system), SteadyStart::unloaded, response), InvalidInput);
+}
+
+TEST(TimeMarching, RefusesMethodsThatCannotMarch) {
+  const auto undamped = single_mass(0.15, 2.0, 0.0);
+  EXPECT_THROW(TimeMarchingSolver(undamped, with_method("explicit_euler"), observing({0})), InvalidInput);
+  EXPECT_THROW(TimeMarchingSolver(undamped, with_method("exact"), observing({0})), InvalidInput);
+  EXPECT_THROW(TimeMarchingSolver(undamped, with_method("exponential", std::nan("")), observing({0})), InvalidInput);
+}
+
+// Two masses that know of each other through a slider that always sticks or is not there: forces without a common
+// period, and the amplitude is the sum of both.
+TEST(QuasiPeriodic, AddsTheAmplitudesOfIncommensurateForcesOnALinearMass) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = testing::sparse(0.2 * Matrix::Identity(1, 1));
+  parts.stiffness = parts.mass;
+  const double first = 1.5, second = 1.5 * std::numbers::phi;
+  parts.loads = system::Loads({harmonic(0, 1.0, first), harmonic(0, 0.7, second)});
+  parts.coordinates = {"mass"};
+  const system::LocallyNonlinear system(std::move(parts));
+  const auto linear = [](double force, double w) { return force / std::hypot(1.0 - w * w, 0.2 * w); };
+  const auto response = solve_quasi_periodic(system, with_method("exponential"), observing({0}), 200.0);
+  EXPECT_EQ(response.status, SteadyStatus::quasi_periodic);
+  // Within a window of 200 s the peaks of both meet to within some hundredths of a radian.
+  const double sum = linear(1.0, first) + linear(0.7, second);
+  EXPECT_LT(response.amplitude[0], sum * 1.001);
+  EXPECT_GT(response.amplitude[0], sum * 0.99);
+  EXPECT_NEAR(response.input_work, response.viscous_work, 0.01 * response.input_work);
+}
+
+TEST(QuasiPeriodic, SettlesWithASliderUnderTwoIncommensurateForces) {
+  const double first = 7.7, second = 7.7 * std::numbers::sqrt2;
+  const auto base = damper_model(10.0, first, 0.0);
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = base.mass();
+  parts.damping = base.damping();
+  parts.stiffness = base.stiffness();
+  parts.sliders = base.sliders();
+  parts.coordinates = base.coordinates();
+  parts.loads = system::Loads({harmonic(1, 20.0, first), harmonic(3, 20.0, second)});
+  const system::LocallyNonlinear system(std::move(parts));
+  EXPECT_THROW(excitation_of(system), InvalidInput);
+  auto options = with_method("average_acceleration", 5e-3);
+  const auto response = solve_quasi_periodic(system, options, observing({1, 3}), 60.0);
+  EXPECT_EQ(response.status, SteadyStatus::quasi_periodic);
+  EXPECT_LE(response.error, 5e-3);
+  EXPECT_GT(response.dissipated.minCoeff(), 0.0);
+  EXPECT_THROW(solve_quasi_periodic(system, options, observing({1}), std::nan("")), InvalidInput);
 }
 
 }  // namespace

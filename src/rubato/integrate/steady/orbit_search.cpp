@@ -1,18 +1,17 @@
 #include <rubato/integrate/steady/orbit_search.hpp>
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 namespace rubato::integrate {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double round_off = 1e-13;
-// Residuals that change by less than this part of a change of the state belong to a motion that nothing damps: what an
-// extrapolation makes of their round-off is far away.
-constexpr double least_decay = 1e-9;
+
+enum class Next { rests, marches, leaps };
 
 /// One lane on its way.
 class Lane {
@@ -21,47 +20,59 @@ class Lane {
 
   OrbitReport report;
   bool is_done = false;
+  bool is_misled = false;  ///< the last leap led away
 
   /// Takes a marched period and says where the next one starts.
-  Vector next(const Vector& x, const Vector& y, Index motion) {
+  /// @param scale, change, leap  norms of the state, of its change over the period, of the extrapolated step
+  Next next(double scale, double change, double leap) {
     ++report.marched;
-    const Vector residual = y - x;
-    const double scale = y.head(motion).norm(), difference = residual.norm();
-    report.residual = difference == 0.0 ? 0.0 : difference / scale;
+    is_misled = false;
+    report.residual = change == 0.0 ? 0.0 : change / scale;
     sizes_.push_back(scale);
-    estimate_distance();
-    const bool is_small = report.residual <= options_.tolerance;
+    report.distance = extrapolates_ ? std::max(leap, change) / scale : distance_by_decay();
+    if (change == 0.0) report.distance = 0.0;
     const bool is_near = report.distance <= 10.0 * options_.tolerance || report.residual <= round_off;
-    // While the residuals are small the march goes on by itself: their decay is the estimate of the distance.
-    confirmed_ = is_small ? confirmed_ + 1 : 0;
-    if (confirmed_ >= options_.confirmations) {
-      if (is_near) {
+    if (report.residual <= options_.tolerance && (is_near || !extrapolates_)) {
+      if (++confirmed_ >= options_.confirmations && is_near) {
         report.status = SteadyStatus::converged;
         is_done = true;
-        return x;
+        return Next::rests;
       }
-      if (extrapolates_) confirmed_ = 0;
+      return Next::marches;
     }
-    if (!extrapolates_ && find_multiple(y, scale)) {
-      is_done = true;
-      return y;
-    }
-    if (!extrapolates_ || confirmed_ > 0) {
-      if (extrapolates_) extrapolation_.clear();
-      return y;
-    }
+    confirmed_ = 0;
+    if (!extrapolates_) return Next::marches;
     // Sliders that change between stick and slip can mislead an extrapolation; the march itself cannot diverge.
-    if (report.residual > 4.0 * best_) {
-      extrapolation_.clear();
-      plain_ = patience_ = 2 * patience_;
-      best_ = std::numeric_limits<double>::infinity();
+    if (report.residual > 4.0 * best_ || !std::isfinite(leap)) {
+      is_misled = true;
+      plain_ = patience_;
+      patience_ *= 2;
+      best_ = infinity;
     }
     best_ = std::min(best_, report.residual);
-    if (plain_ > 0) {
-      --plain_;
-      return y;
+    if (plain_ == 0) return Next::leaps;
+    --plain_;
+    return Next::marches;
+  }
+
+  /// Without extrapolation only: does the state repeat after several periods?
+  bool finds_multiple(const Vector& state, double scale) {
+    history_.push_front(state);
+    const auto longest = static_cast<std::size_t>(options_.max_multiple);
+    if (history_.size() > longest + 1) history_.pop_back();
+    hits_.resize(longest + 1, 0);
+    for (std::size_t k = 2; k < history_.size(); ++k) {
+      const double change = (history_[k] - state).norm();
+      const bool repeats = report.residual > 100.0 * options_.tolerance && change <= options_.tolerance * scale;
+      hits_[k] = repeats ? hits_[k] + 1 : 0;
+      if (hits_[k] < static_cast<int>(k) * options_.confirmations) continue;
+      report.status = SteadyStatus::subharmonic;
+      report.multiple = static_cast<int>(k);
+      report.residual = change / scale;
+      is_done = true;
+      return true;
     }
-    return extrapolation_.next(x, residual);
+    return false;
   }
 
   /// Without repetition after the last period: bounded, or growing without bound?
@@ -81,92 +92,67 @@ class Lane {
   }
 
  private:
-  void estimate_distance() {
+  double distance_by_decay() {
     residuals_.push_back(report.residual);
     constexpr std::size_t window = 3;
     if (residuals_.size() > window + 1) residuals_.pop_front();
-    const double rate = residuals_.size() > window && residuals_.front() > 0.0
-                            ? std::pow(report.residual / residuals_.front(), 1.0 / window)
-                            : 0.0;
-    report.distance = rate < 1.0 ? report.residual / (1.0 - rate) : std::numeric_limits<double>::infinity();
-  }
-
-  bool find_multiple(const Vector& y, double scale) {
-    history_.push_front(y);
-    const auto longest = static_cast<std::size_t>(options_.max_multiple);
-    if (history_.size() > longest + 1) history_.pop_back();
-    hits_.resize(longest + 1, 0);
-    for (std::size_t k = 2; k < history_.size(); ++k) {
-      const bool repeats =
-          report.residual > 100.0 * options_.tolerance && (history_[k] - y).norm() <= options_.tolerance * scale;
-      hits_[k] = repeats ? hits_[k] + 1 : 0;
-      if (hits_[k] < static_cast<int>(k) * options_.confirmations) continue;
-      report.status = SteadyStatus::subharmonic;
-      report.multiple = static_cast<int>(k);
-      report.residual = (history_[k] - y).norm() / scale;
-      return true;
-    }
-    return false;
+    if (residuals_.size() <= window || residuals_.front() == 0.0) return infinity;
+    const double rate = std::pow(report.residual / residuals_.front(), 1.0 / window);
+    return rate < 1.0 ? report.residual / (1.0 - rate) : infinity;
   }
 
   const OrbitSearchOptions& options_;
   bool extrapolates_;
-  PeriodExtrapolation extrapolation_;
   std::deque<double> residuals_;
   std::vector<double> sizes_;
   std::deque<Vector> history_;
   std::vector<int> hits_;
-  int confirmed_ = 0, plain_ = 2, patience_ = 2;
-  double best_ = std::numeric_limits<double>::infinity();
+  int confirmed_ = 0, plain_ = 0, patience_ = 2;
+  double best_ = infinity;
 };
+
+// A slider that did not slip in the period keeps its slip: what is learnt from others is none of its business.
+void keep_slips(const PeriodMap& map, const LaneArray& after, const LaneArray& residuals, LaneArray& steps) {
+  constexpr double still = 1e-12;
+  for (Index l = 0; l < steps.cols(); ++l) {
+    const double scale = after.col(l).head(map.slip_start()).matrix().norm();
+    for (Index i = map.slip_start(); i < map.slip_start() + map.slips(); ++i)
+      if (std::abs(residuals(i, l)) <= still * scale) steps(i, l) = 0.0;
+  }
+}
 
 }  // namespace
 
-void PeriodExtrapolation::clear() {
-  dx_.clear();
-  dr_.clear();
-  last_x_.resize(0);
-}
-
-Vector PeriodExtrapolation::next(const Vector& x, const Vector& residual) {
-  if (last_x_.size() > 0) {
-    const Vector dx = x - last_x_, dr = residual - last_r_;
-    if (dr.norm() > least_decay * dx.norm()) {
-      dx_.push_back(dx);
-      dr_.push_back(dr);
-    }
-    if (dx_.size() > depth_) {
-      dx_.pop_front();
-      dr_.pop_front();
-    }
-  }
-  last_x_ = x;
-  last_r_ = residual;
-  Vector result = x + residual;
-  if (dr_.empty()) return result;
-  Matrix differences(x.size(), static_cast<Index>(dr_.size()));
-  for (std::size_t k = 0; k < dr_.size(); ++k) differences.col(static_cast<Index>(k)) = dr_[k];
-  Eigen::ColPivHouseholderQR<Matrix> factor(differences);
-  factor.setThreshold(1e-8);  // what is nearly dependent says nothing new
-  const Vector weights = factor.solve(residual);
-  for (std::size_t k = 0; k < dr_.size(); ++k) result -= weights[static_cast<Index>(k)] * (dx_[k] + dr_[k]);
-  return result;
-}
-
-std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions& options, bool extrapolates,
-                                       LaneArray& states) {
-  std::vector<Lane> lanes(static_cast<std::size_t>(states.cols()), Lane(options, extrapolates));
-  LaneArray after;
+std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions& options,
+                                       OrbitExtrapolation* extrapolation, LaneArray& states) {
+  const Index count = states.cols();
+  std::vector<Lane> lanes(static_cast<std::size_t>(count), Lane(options, extrapolation != nullptr));
+  LaneArray after, residuals, steps;
+  if (extrapolation) extrapolation->begin(map, count);
   for (int period = 0; period < options.max_periods; ++period) {
     if (!map.advance(states, after, nullptr, 0)) {
-      for (Lane& lane : lanes) lane.report.residual = std::numeric_limits<double>::infinity();
+      for (Lane& lane : lanes)
+        if (!lane.is_done) lane.report.residual = infinity;
       break;
     }
+    residuals = after - states;
+    if (extrapolation) {
+      extrapolation->next(states, residuals, steps);
+      keep_slips(map, after, residuals, steps);
+    }
     bool is_done = true;
-    for (Index l = 0; l < states.cols(); ++l) {
+    for (Index l = 0; l < count; ++l) {
       Lane& lane = lanes[static_cast<std::size_t>(l)];
       if (lane.is_done) continue;
-      states.col(l) = lane.next(states.col(l).matrix(), after.col(l).matrix(), map.slip_start());
+      const double scale = after.col(l).head(map.slip_start()).matrix().norm();
+      const double leap = extrapolation ? steps.col(l).matrix().norm() : 0.0;
+      const Next next = lane.next(scale, residuals.col(l).matrix().norm(), leap);
+      if (lane.is_misled) extrapolation->distrust(l);
+      if (next == Next::leaps)
+        states.col(l) += steps.col(l);
+      else if (next == Next::marches)
+        states.col(l) = after.col(l);
+      if (!extrapolation && !lane.is_done) lane.finds_multiple(after.col(l).matrix(), scale);
       is_done = is_done && lane.is_done;
     }
     if (is_done) break;

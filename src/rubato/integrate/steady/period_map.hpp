@@ -27,17 +27,22 @@ class PeriodMap {
   virtual Index slips() const = 0;
   virtual Index lanes() const = 0;  ///< most points side by side
 
-  /// Binds the map to excitations of one frequency, one a lane. Returns false where the step is too long for the method
-  /// to be solved.
+  /// Binds the map to excitations of one frequency, one a lane. Returns false where this map cannot take them: a step
+  /// too long for its iteration, a resonance without damping.
   virtual bool prepare(std::span<const Excitation> excitations, int steps) = 0;
 
   /// Writes the states one period later. With `records` (one a lane, reset by the caller for a multiple of `steps`)
-  /// the samples from column `first` on are written too, and the works added up.
+  /// the samples from column `first` on are written too, and the works added up; lanes whose record ends before are
+  /// left out.
   /// @return false if a step failed or a number is not finite
   virtual bool advance(const LaneArray& from, LaneArray& to, std::vector<PeriodRecord>* records, Index first) = 0;
 
   /// A state of the system, at the phase zero of the loads, in the letters of the map (after prepare).
   virtual void encode(const system::State& state, LaneArray& states, Index lane) = 0;
+
+  /// (I - dP/dx)^-1 of the structure without sliders [size x size], which makes of a residual the way to the end of the
+  /// march; identity where it is not known.
+  virtual Matrix linear_update() const { return Matrix::Identity(size(), size()); }
 };
 
 }  // namespace rubato::integrate

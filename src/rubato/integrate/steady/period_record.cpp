@@ -66,7 +66,8 @@ void read_sliders(const PeriodRecord& record, const Excitation& excitation, cons
 
 }  // namespace
 
-void PeriodRecord::reset(Index observed, Index sliders, Index wanted, bool accelerations) {
+void PeriodRecord::reset(Index observed, Index sliders, Index wanted, bool accelerations, bool works) {
+  has_works = works;
   steps = wanted;
   position.resize(observed, wanted + 1);
   velocity.resize(observed, wanted + 1);

@@ -6,9 +6,10 @@ namespace rubato::integrate {
 
 /// What a march writes down on its way over one or more periods: S + 1 samples at equal times, both ends included.
 struct PeriodRecord {
-  /// Makes room for `steps` steps. `accelerations` may stay unwanted.
-  void reset(Index observed, Index sliders, Index steps, bool accelerations);
+  /// Makes room for `steps` steps. Accelerations and works may stay unwanted.
+  void reset(Index observed, Index sliders, Index steps, bool accelerations, bool works);
 
+  bool has_works = true;
   Index steps = 0;                              ///< S
   Matrix position, velocity, acceleration;      ///< of each observed [o x S+1] [m], [m/s], [m/s2]
   Matrix slider_force, displacement;            ///< fc and u of each slider [m x S+1] [N], [m]

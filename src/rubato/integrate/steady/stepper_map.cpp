@@ -52,6 +52,7 @@ class StepperMap final : public PeriodMap {
 
   bool advance(const LaneArray& from, LaneArray& to, std::vector<PeriodRecord>* records, Index first) override {
     decode(from);
+    if (records && first >= (*records)[0].steps) records = nullptr;
     if (records) {
       if (!writer_ || first == 0) writer_.emplace(*system_, request_);
       if (first == 0) writer_->write(from_, (*records)[0], 0, false);
@@ -135,6 +136,7 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
   record.slider_force.col(column) = state.slider_force;
   for (Index i = 0; i < system_.slider_count(); ++i)
     record.displacement(i, column) = system_.relative_displacement(i, state.q);
+  if (!record.has_works) return;
   product_.noalias() = system_.damping() * state.v;
   loads_.evaluate(state.t, force_);
   if (adds_work) {
