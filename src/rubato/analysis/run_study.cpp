@@ -1,4 +1,5 @@
 #include <rubato/analysis/method_study.hpp>
+#include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>
@@ -35,6 +36,12 @@ AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinea
   return result;
 }
 
+AnalysisOutline outline(const ModesPlan& plan, const system::LocallyNonlinear& system) {
+  const double limits = system.slider_count() > 0 ? 2.0 : 1.0, width = 7.0 + 2.0 * double(plan.observed.size());
+  return {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
+          limits * static_cast<double>(plan.count) * width * 28.0};
+}
+
 }  // namespace
 
 AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
@@ -51,6 +58,8 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
     }
     return outline(plan, system);
   }
+  if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
+    return outline(plan_modes(analysis.name, analysis.where, *modes, system, parameters), system);
   const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
   check_method_study(analysis.name, analysis.where, study, system, parameters);
   return {"method study: errors, orders and curves of each method", 1e7};
@@ -62,6 +71,9 @@ RunReport run_analysis(const model::AnalysisDescription& analysis, const system:
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
     report = run_transient(analysis.name, plan_transient(analysis.name, analysis.where, *transient, system, parameters),
                            system, context);
+  else if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
+    report = run_modes(analysis.name, plan_modes(analysis.name, analysis.where, *modes, system, parameters), system,
+                       context);
   else
     report = run_method_study(analysis.name, std::get<model::MethodStudyDescription>(analysis.task), system, parameters,
                               context);

@@ -203,9 +203,14 @@ struct MethodStudyDescription {
   bool as_printed = false;                        ///< also the conventions of the thesis's tables
 };
 
+struct ModesDescription {
+  std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
+  std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
+};
+
 struct AnalysisDescription {
   std::string name;
-  std::variant<TransientDescription, MethodStudyDescription> task;
+  std::variant<TransientDescription, MethodStudyDescription, ModesDescription> task;
   Location where;
 };
 

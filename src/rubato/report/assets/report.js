@@ -54,6 +54,8 @@ function write_analysis(parent, analysis, index) {
     write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));
   } else if (is_method_study(analysis)) {
     write_method_study(chapter, analysis, data.theory);
+  } else if (is_modes(analysis)) {
+    write_modes(chapter, analysis);
   } else {
     write_tables(chapter, analysis.tables);
   }
