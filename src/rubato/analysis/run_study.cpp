@@ -1,6 +1,7 @@
 #include <rubato/analysis/frequency_response.hpp>
 #include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/method_study.hpp>
+#include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>
@@ -55,51 +56,86 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
   return result;
 }
 
-}  // namespace
+AnalysisOutline outline(const ModesPlan& plan, const system::LocallyNonlinear& system) {
+  const double limits = system.slider_count() > 0 ? 2.0 : 1.0, width = 7.0 + 2.0 * double(plan.observed.size());
+  return {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
+          limits * static_cast<double>(plan.count) * width * 28.0};
+}
 
-AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
-  const system::LocallyNonlinear& system = input.system;
-  const numerics::Parameters& parameters = input.parameters;
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
-    const TransientPlan plan = plan_transient(analysis.name, analysis.where, *transient, system, parameters);
-    if (std::holds_alternative<integrate::Exact>(plan.method.formula)) check_exact_transient(analysis.where, system);
-    if (std::holds_alternative<integrate::Exponential>(plan.method.formula)) {
-      try {
-        (void)integrate::make_stepper(plan.method, system);
-      } catch (const InvalidInput& fault) {
-        throw InvalidInput(analysis.where, fault.message());
-      }
-    }
-    return outline(plan, system);
-  }
-  if (const auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
-    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, *response, input);
+/// Calls with the plan of an analysis's own kind: what checks it, or what runs it.
+struct Check {
+  const model::AnalysisDescription& analysis;
+  const StudyInput& input;
+
+  template <typename Attempt>
+  void at_the_analysis(Attempt&& attempt) const {
     try {
-      (void)steady_solvers(plan.route).response(system, plan.request);
+      attempt();
     } catch (const InvalidInput& fault) {
       throw InvalidInput(analysis.where, fault.message());
     }
-    return outline(plan, system);
   }
-  const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
-  check_method_study(analysis.name, analysis.where, study, system, parameters);
-  return {"method study: errors, orders and curves of each method", 1e7};
+
+  AnalysisOutline operator()(const model::TransientDescription& transient) const {
+    const TransientPlan plan =
+        plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters);
+    if (std::holds_alternative<integrate::Exact>(plan.method.formula))
+      check_exact_transient(analysis.where, input.system);
+    if (std::holds_alternative<integrate::Exponential>(plan.method.formula))
+      at_the_analysis([&] { (void)integrate::make_stepper(plan.method, input.system); });
+    return outline(plan, input.system);
+  }
+
+  AnalysisOutline operator()(const model::MethodStudyDescription& study) const {
+    check_method_study(analysis.name, analysis.where, study, input.system, input.parameters);
+    return {"method study: errors, orders and curves of each method", 1e7};
+  }
+
+  AnalysisOutline operator()(const model::ModesDescription& modes) const {
+    return outline(plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters), input.system);
+  }
+
+  AnalysisOutline operator()(const model::FrequencyResponseDescription& response) const {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
+    at_the_analysis([&] { (void)steady_solvers(plan.route).response(input.system, plan.request); });
+    return outline(plan, input.system);
+  }
+};
+
+struct Run {
+  const model::AnalysisDescription& analysis;
+  const StudyInput& input;
+  RunContext& context;
+
+  RunReport operator()(const model::TransientDescription& transient) const {
+    return run_transient(analysis.name,
+                         plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters),
+                         input.system, context);
+  }
+
+  RunReport operator()(const model::MethodStudyDescription& study) const {
+    return run_method_study(analysis.name, study, input.system, input.parameters, context);
+  }
+
+  RunReport operator()(const model::ModesDescription& modes) const {
+    return run_modes(analysis.name, plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters),
+                     input.system, context);
+  }
+
+  RunReport operator()(const model::FrequencyResponseDescription& response) const {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
+    return run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
+  }
+};
+
+}  // namespace
+
+AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  return std::visit(Check{analysis, input}, analysis.task);
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
-  const system::LocallyNonlinear& system = input.system;
-  const numerics::Parameters& parameters = input.parameters;
-  RunReport report;
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
-    report = run_transient(analysis.name, plan_transient(analysis.name, analysis.where, *transient, system, parameters),
-                           system, context);
-  } else if (const auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
-    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, *response, input);
-    report = run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
-  } else {
-    report = run_method_study(analysis.name, std::get<model::MethodStudyDescription>(analysis.task), system, parameters,
-                              context);
-  }
+  RunReport report = std::visit(Run{analysis, input, context}, analysis.task);
   auto notes = report.statistics;
   for (std::size_t i = 0; i < report.warnings.size(); ++i)
     notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);

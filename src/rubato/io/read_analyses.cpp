@@ -115,11 +115,18 @@ MethodStudyDescription read_method_study(TomlReader& reader) {
   return study;
 }
 
+ModesDescription read_modes(TomlReader& reader) {
+  ModesDescription modes;
+  modes.count = reader.optional_quantity("count");
+  modes.observe = read_observe(reader);
+  return modes;
+}
+
 }  // namespace
 
 std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
-  const std::vector<std::string> known{"transient", "method_study", "frequency_response"};
-  const std::vector<std::string> planned{"damper_curve", "modes", "static"};
+  const std::vector<std::string> known{"transient", "method_study", "modes", "frequency_response"};
+  const std::vector<std::string> planned{"damper_curve", "static"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -142,11 +149,13 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
     if (std::find(planned.begin(), planned.end(), type) != planned.end())
       throw InvalidInput(reader.where("type"),
                          fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study, frequency_response",
+                                     "available: transient, method_study, modes, frequency_response",
                                      analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
+    else if (type == "modes")
+      analysis.task = read_modes(reader);
     else if (type == "frequency_response")
       analysis.task = read_frequency_response(reader, folder);
     else

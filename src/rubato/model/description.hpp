@@ -268,9 +268,14 @@ struct FrequencyResponseDescription {
   std::optional<WaveformsDescription> waveforms;
 };
 
+struct ModesDescription {
+  std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
+  std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
+};
+
 struct AnalysisDescription {
   std::string name;
-  std::variant<TransientDescription, MethodStudyDescription, FrequencyResponseDescription> task;
+  std::variant<TransientDescription, MethodStudyDescription, ModesDescription, FrequencyResponseDescription> task;
   Location where;
 };
 

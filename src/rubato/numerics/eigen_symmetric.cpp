@@ -28,10 +28,21 @@ using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrderin
 
 struct Problem {
   SparseMatrix stiffness, mass;
-  Vector size;  // |K_ii| + (largest K_ii / M_ii) M_ii: what a diagonal entry of K - s M is made of
+  Vector size;  // |K_ii| + M_ii: what a diagonal entry of K - s M is made of
+  double unit_square = 1.0;  // what an eigenvalue of 1 here is outside [rad2/s2]
 
   SparseMatrix shifted(double s) const { return SparseMatrix(stiffness - s * mass); }
 };
+
+// Scaled so that the highest eigenvalue is of the order of one and masses are too: Spectra's floors are absolute.
+Problem scaled(const SparseMatrix& stiffness, const SparseMatrix& mass) {
+  const double heavy = mass.diagonal().mean();
+  double stiff = (stiffness.diagonal().array().abs() / mass.diagonal().array()).maxCoeff();
+  if (!(stiff > 0.0)) stiff = 1.0;
+  Problem problem{SparseMatrix(stiffness / (stiff * heavy)), SparseMatrix(mass / heavy), {}, stiff};
+  problem.size = problem.stiffness.diagonal().cwiseAbs() + problem.mass.diagonal();
+  return problem;
+}
 
 // Spectra's view of (K - s M)^-1, with the modes already found taken out of every product.
 class ShiftInvert {
@@ -193,13 +204,7 @@ void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, SymmetricMo
 
 SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count) {
   const Index n = mass.rows();
-  // Scaled so that the highest eigenvalue is of the order of one and masses are too: Spectra's floors are absolute.
-  const double heavy = mass.diagonal().mean();
-  double stiff = (stiffness.diagonal().array().abs() / mass.diagonal().array()).maxCoeff();
-  if (!(stiff > 0.0)) stiff = 1.0;
-  Problem problem{SparseMatrix(stiffness / (stiff * heavy)), SparseMatrix(mass / heavy), {}};
-  problem.size = problem.stiffness.diagonal().cwiseAbs() + problem.mass.diagonal();
-
+  const Problem problem = scaled(stiffness, mass);
   Ldlt factor;
   factor.analyzePattern(problem.shifted(-1.0));
   const Index wanted = std::min(n - 1, count + std::max<Index>(4, count / 8));
@@ -242,6 +247,13 @@ SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix
 }
 
 }  // namespace
+
+std::optional<Index> modes_below(const SparseMatrix& stiffness, const SparseMatrix& mass, double value) {
+  const Problem problem = scaled(stiffness, mass);
+  Ldlt factor;
+  factor.analyzePattern(problem.shifted(-1.0));
+  return eigenvalues_below(problem, factor, value / problem.unit_square);
+}
 
 bool is_dense_eigenproblem(Index size, Index count) { return size <= dense_size || 3 * count > size; }
 

@@ -2,6 +2,8 @@
 
 #include <rubato/core/types.hpp>
 
+#include <optional>
+
 namespace rubato::numerics {
 
 /// The lowest solutions of K phi = omega^2 M phi, and how far they can be trusted.
@@ -29,6 +31,10 @@ SymmetricModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& m
 
 /// Whether lowest_modes takes all modes from the dense solver.
 bool is_dense_eigenproblem(Index size, Index count);
+
+/// How many eigenvalues of K phi = omega^2 M phi lie below a value, by the inertia of K - value M; nothing where
+/// round-off could have turned the sign of a pivot (a value on an eigenvalue).
+std::optional<Index> modes_below(const SparseMatrix& stiffness, const SparseMatrix& mass, double value);
 
 /// The dense solver for all modes.
 SymmetricModes all_modes(const SparseMatrix& stiffness, const SparseMatrix& mass);

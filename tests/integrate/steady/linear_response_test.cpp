@@ -256,6 +256,82 @@ TEST(DynamicStiffness, ExchangesRowsWhereItMust) {
   }
 }
 
+// A membrane of 22 by 22 masses with Rayleigh damping and a dashpot to the ground that couples the modes; its mode route
+// is held to the direct one.
+system::LocallyNonlinear membrane(bool is_held) {
+  const Index side = 22, n = side * side;
+  std::vector<Eigen::Triplet<double>> k;
+  for (Index i = 0; i < n; ++i) {
+    double sum = is_held ? 4.0 : 0.0;
+    const auto join = [&](Index j) {
+      k.emplace_back(i, j, -1.0);
+      if (!is_held) sum += 1.0;
+    };
+    if (i % side > 0) join(i - 1);
+    if (i % side + 1 < side) join(i + 1);
+    if (i >= side) join(i - side);
+    if (i + side < n) join(i + side);
+    k.emplace_back(i, i, sum);
+  }
+  system::LocallyNonlinear::Parts parts;
+  parts.stiffness.resize(n, n);
+  parts.stiffness.setFromTriplets(k.begin(), k.end());
+  parts.mass.resize(n, n);
+  parts.mass.setIdentity();
+  SparseMatrix dashpot(n, n);
+  dashpot.insert(n / 2 + 7, n / 2 + 7) = 0.3;
+  parts.damping = SparseMatrix(0.002 * parts.mass + 0.01 * parts.stiffness) + dashpot;
+  parts.sliders = {{"contact", 40, n - 45, 2.0, 1.0}};
+  return system::LocallyNonlinear(std::move(parts));
+}
+
+TEST(ModalStiffness, AnswersWithinItsToleranceAndItsEstimate) {
+  for (const bool is_held : {true, false})
+    for (const double tolerance : {1e-4, 1e-9}) {
+      const auto system = membrane(is_held);
+      const Index n = system.size();
+      const double highest = 0.6;
+      ModalStiffness modal(system, {true}, highest, tolerance);
+      ASSERT_TRUE(modal.is_usable());
+      DynamicStiffness direct(system, {true});
+      ComplexVector force = ComplexVector::Zero(n), x, exact;
+      force[100] = 1.0;
+      force[455] = Complex(-0.3, 0.8);
+      for (int i = 1; i <= 20; ++i) {
+        const double omega = highest * i / 20.0;
+        const auto solution = modal.solve(omega, force, x);
+        ASSERT_TRUE(solution.has_value()) << omega;
+        direct.factorise(omega);
+        direct.solve(force, exact);
+        const double error = (x - exact).cwiseAbs().maxCoeff(), size = exact.cwiseAbs().maxCoeff();
+        const double estimate = solution->uncertainty.cwiseAbs().maxCoeff();
+        EXPECT_LT(error, 2.0 * tolerance * size) << omega;
+        // Off by a factor of 1/4 + (s / omega_left_out^2) and the coupling by the dashpot, and by round-off of x.
+        EXPECT_LT(error, 2.0 * estimate + 1e-11 * size) << omega;
+      }
+      // A sweep adds residual vectors at its first points, then few.
+      EXPECT_GT(modal.basis_size(), modal.mode_count());
+      EXPECT_LT(modal.basis_size(), modal.mode_count() + 40);
+      EXPECT_FALSE(modal.solve(1.01 * highest, force, x).has_value());
+    }
+}
+
+// At a resonance without damping the error of the basis cannot be told from the answer: the point is left to the direct
+// solution, which says what it is.
+TEST(ModalStiffness, LeavesAResonanceWithoutDampingToTheDirectSolution) {
+  const auto damped = membrane(true);
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = damped.mass();
+  parts.stiffness = damped.stiffness();
+  parts.damping = SparseMatrix(damped.size(), damped.size());
+  const system::LocallyNonlinear system(std::move(parts));
+  ModalStiffness modal(system, {}, 0.6, 1e-9);
+  ComplexVector force = ComplexVector::Unit(system.size(), 100), x;
+  const double resonance = std::sqrt(8.0) * std::sin(0.5 * std::numbers::pi / 23.0);
+  EXPECT_FALSE(modal.solve(resonance, force, x).has_value());
+  EXPECT_TRUE(modal.solve(1.01 * resonance, force, x).has_value());
+}
+
 TEST(FourierSeries, PeakToPeakOfTwoHarmonicsIsThatOfTheirWaveform) {
   // cos t - cos(2 t) / 4 has its extrema at cos t = 1 (3/4) and cos t = -1 (-5/4): 1. With + 1/2: at cos t = -1/2
   // (-3/4) and 1 (3/2): 9/8.

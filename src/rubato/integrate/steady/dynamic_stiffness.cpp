@@ -165,6 +165,10 @@ DynamicStiffness::DynamicStiffness(DynamicStiffness&&) noexcept = default;
 DynamicStiffness& DynamicStiffness::operator=(DynamicStiffness&&) noexcept = default;
 
 Index DynamicStiffness::size() const { return work_->matrix.rows(); }
+double DynamicStiffness::fill() const {
+  if (work_->is_dense) return static_cast<double>(size());
+  return static_cast<double>(work_->ldlt.factor_entries()) / static_cast<double>(size());
+}
 long DynamicStiffness::pivoted() const { return work_->pivoted; }
 
 void DynamicStiffness::factorise(double angular_frequency) {

@@ -33,6 +33,8 @@ class DynamicStiffness {
   void factorise(double angular_frequency);
   /// Solves S x = f at the frequency factorised last, and says how far x can be trusted.
   StiffnessSolution solve(const ComplexVector& force, ComplexVector& x);
+  /// Entries of the factor a row; the size where it is dense.
+  double fill() const;
   /// Factorisations so far that needed pivoting.
   long pivoted() const;
 

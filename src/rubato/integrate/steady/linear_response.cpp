@@ -21,6 +21,9 @@ auto difference(const SteadyRequest::Observed& observed, const V& x) {
   return observed.second == ground ? x[observed.first] : x[observed.first] - x[observed.second];
 }
 
+constexpr Index least_points = 20;
+constexpr Index direct_size = 3000;
+constexpr double direct_fill = 10.0;  // entries of the factor a row: below (chains, frames) it costs a few substitutions
 // Beside a resonance a coordinate may stand still (a node) or not be coupled to it: what it does is finite.
 constexpr double takes_no_part = 1e-9;
 
@@ -28,15 +31,22 @@ double largest_of(const ComplexVector& x) { return x.size() > 0 ? x.cwiseAbs().m
 
 }  // namespace
 
-LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSliders stuck, SteadyRequest request)
-    : system_(system), stuck_(std::move(stuck)), request_(std::move(request)), stiffness_(system_, stuck_) {}
-
-LinearResponse free_limit(const system::LocallyNonlinear& system, SteadyRequest request) {
-  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), false), std::move(request)};
+LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSliders stuck, SteadyRequest request,
+                               const LinearSweep& sweep)
+    : system_(system), stuck_(std::move(stuck)), request_(std::move(request)), stiffness_(system_, stuck_) {
+  const bool is_worth_it = sweep.points >= least_points && system_.size() > direct_size &&
+                           stiffness_.fill() > direct_fill && sweep.highest > 0.0;
+  if (!is_worth_it) return;
+  modal_.emplace(system_, stuck_, sweep.highest, sweep.tolerance);
+  if (!modal_->is_usable()) modal_.reset();
 }
 
-LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest request) {
-  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), true), std::move(request)};
+LinearResponse free_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
+  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), false), std::move(request), sweep};
+}
+
+LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
+  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), true), std::move(request), sweep};
 }
 
 void LinearResponse::solve(const Excitation& excitation, SteadyStart, SteadyResponse& response) {
@@ -61,8 +71,10 @@ void LinearResponse::solve(const Excitation& excitation, SteadyStart, SteadyResp
 }
 
 double LinearResponse::solve_order(int order, const ComplexVector& force, ComplexVector& x, Doubt& doubt) {
-  stiffness_.factorise(order * omega_);
-  StiffnessSolution solution = stiffness_.solve(force, x);
+  std::optional<StiffnessSolution> by_modes;
+  if (modal_) by_modes = modal_->solve(order * omega_, force, x);
+  if (!by_modes) stiffness_.factorise(order * omega_);
+  StiffnessSolution solution = by_modes ? std::move(*by_modes) : stiffness_.solve(force, x);
   doubt.uncertainty = std::move(solution.uncertainty);
   doubt.least = largest_of(doubt.uncertainty);
   // Written so that a solution that is not finite is a resonance too.
