@@ -17,6 +17,9 @@ using Outcome = CondensedStructure::Outcome;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Index most_patterns = 32;  // of loads, before those of old points are forgotten
 constexpr int most_left_out = 8;     // orders that the error estimate looks at
+// The estimate is linear in what is left out, and ends somewhere: on 10,000 random structures of two coordinates and
+// one to four sliders the error was at most 1.43 times the bare one (median 0.26).
+constexpr double safety = 1.5;
 constexpr int most_iterations = 30;  // of Newton from one start
 constexpr double held_part = 0.5;    // of the sliders' springs, where the structure alone is near a resonance
 
@@ -48,8 +51,8 @@ struct HarmonicBalanceSolver::Implementation {
   }
 
   void take_loads(const Excitation& excitation);
-  bool condense(const Excitation& excitation, int count, bool with_mean);
-  bool condense_one(CondensedHarmonic& harmonic, double angular_frequency, const ComplexVector& load);
+  bool condense(const Excitation& excitation, int stride, int places, bool with_mean);
+  bool condense_one(CondensedHarmonic& harmonic, double angular_frequency, int order);
   bool is_driven_beyond_friction(const Excitation& excitation, double angular_frequency, const ComplexVector& load);
   int orders_to_probe(const Excitation& excitation, const Orders& orders) const;
   void predict(double angular_frequency, const Orders& orders, bool with_mean);
@@ -60,7 +63,7 @@ struct HarmonicBalanceSolver::Implementation {
   void recover();
   void fill(const Excitation& excitation, SteadyResponse& response);
   void fill_unbounded(SteadyResponse& response) const;
-  ComplexVector load_of(const Excitation& excitation, int order) const;
+  void load_on(int order, ComplexVector& load) const;
 
   const system::LocallyNonlinear& system;
   SteadyRequest request;
@@ -73,11 +76,13 @@ struct HarmonicBalanceSolver::Implementation {
   std::vector<std::pair<int, ComplexVector>> loads;  ///< order and shares in the patterns; order 0: static
   Excitation last_loads;                             ///< those that `loads` came from
 
+  int harmonics_stride = 0;
   std::vector<CondensedHarmonic> harmonics;  ///< place 0: mean; place 1 + i: order i
   std::vector<HarmonicBalanceEquations> equations;
   SliderSeries series;
   Vector offsets, remembered_offsets;
   std::vector<Past> past;  ///< newest first
+  std::vector<const Past*> usable;
   int count_wanted = 1;
 
   Excitation last;              ///< the point solved last, for its waveform
@@ -143,21 +148,20 @@ void HarmonicBalanceSolver::Implementation::take_loads(const Excitation& excitat
   last_loads = excitation;
 }
 
-ComplexVector HarmonicBalanceSolver::Implementation::load_of(const Excitation&, int order) const {
-  for (const auto& [k, load] : loads)
-    if (k == order) return load;
-  return ComplexVector::Zero(patterns.cols());
+void HarmonicBalanceSolver::Implementation::load_on(int order, ComplexVector& load) const {
+  load.setZero(patterns.cols());
+  for (const auto& [k, shares] : loads)
+    if (k == order) load = shares;
 }
 
 // --- the linear structure -------------------------------------------------------------------------------------------
 
 bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harmonic, double angular_frequency,
-                                                         const ComplexVector& load) {
+                                                         int order) {
   const bool is_condensed = harmonic.angular_frequency == angular_frequency;
   if (!is_condensed) {
     harmonic.held = 0.0;
     harmonic.angular_frequency = -1.0;
-    harmonic.load.resize(0);
     Outcome outcome = structure.condense(angular_frequency, 0.0, harmonic.receptance);
     if (outcome == Outcome::near_resonance || outcome == Outcome::sliders_needed) {
       for (const double held : {held_part, 0.37 * held_part}) {
@@ -171,10 +175,10 @@ bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harm
     if (outcome != Outcome::regular) return false;
     harmonic.angular_frequency = angular_frequency;
   }
-  if (harmonic.load.size() != load.size() || harmonic.load != load) {
-    harmonic.load = load;
-    harmonic.linear.noalias() = harmonic.receptance.rightCols(load.size()) * load;
-  }
+  const bool has_load = harmonic.load.size() == patterns.cols();
+  if (!has_load) load_on(order, harmonic.load);
+  if (!is_condensed || !has_load)
+    harmonic.linear = harmonic.receptance.rightCols(patterns.cols()).lazyProduct(harmonic.load);
   return true;
 }
 
@@ -192,16 +196,16 @@ bool HarmonicBalanceSolver::Implementation::is_driven_beyond_friction(const Exci
   return false;
 }
 
-bool HarmonicBalanceSolver::Implementation::condense(const Excitation& excitation, int places, bool with_mean) {
-  const int stride = series.orders.stride;
+bool HarmonicBalanceSolver::Implementation::condense(const Excitation& excitation, int stride, int places,
+                                                     bool with_mean) {
+  if (stride != harmonics_stride) harmonics.clear();
+  harmonics_stride = stride;
   if (static_cast<int>(harmonics.size()) < places + 1) harmonics.resize(static_cast<std::size_t>(places) + 1);
   const auto need = [&](std::size_t place, int order) {
     const double w = order * excitation.angular_frequency;
     CondensedHarmonic& harmonic = harmonics[place];
-    const bool is_new = harmonic.angular_frequency != w;
-    const ComplexVector load = load_of(excitation, order);
-    if (!condense_one(harmonic, w, load)) return false;
-    return !(is_new && harmonic.held > 0.0 && is_driven_beyond_friction(excitation, w, load));
+    if (!condense_one(harmonic, w, order)) return false;
+    return !(harmonic.held > 0.0 && is_driven_beyond_friction(excitation, w, harmonic.load));
   };
   if (with_mean && !need(0, 0)) return false;
   for (int i = 0; i < places; ++i)
@@ -209,13 +213,16 @@ bool HarmonicBalanceSolver::Implementation::condense(const Excitation& excitatio
   return true;
 }
 
-// How many orders beyond those kept the error estimate must see: two, and all that may resonate.
+// How many orders beyond those kept the error estimate must see: about as many again (forces of sliders that slip most
+// of the period fall slowly), the third harmonic of every load, and all orders that may resonate.
 int HarmonicBalanceSolver::Implementation::orders_to_probe(const Excitation& excitation, const Orders& orders) const {
-  if (highest_frequency == 0.0) return 1;
-  int probes = 2;
-  while (probes < most_left_out &&
-         orders.at(orders.count + probes - 1) * excitation.angular_frequency < highest_frequency)
-    ++probes;
+  int load = 1;
+  for (const LoadHarmonic& h : excitation.harmonics) load = std::max(load, h.order);
+  // A large structure pays each order with a factorisation.
+  int probes = highest_frequency == 0.0 ? 1 : orders.count + (orders.stride == 1 ? 2 : 1);
+  const auto highest = [&] { return orders.at(orders.count + probes - 1); };
+  while (highest() < 3 * load) ++probes;
+  while (probes < most_left_out && highest() * excitation.angular_frequency < highest_frequency) ++probes;
   return probes;
 }
 
@@ -223,7 +230,7 @@ int HarmonicBalanceSolver::Implementation::orders_to_probe(const Excitation& exc
 
 void HarmonicBalanceSolver::Implementation::predict(double w, const Orders& orders, bool with_mean) {
   const Index m = stiffness.size();
-  std::vector<const Past*> usable;
+  usable.clear();
   for (const Past& p : past) {
     const bool fits = p.series.orders.stride == orders.stride && p.series.has_mean == with_mean;
     if (!fits) break;
@@ -239,24 +246,20 @@ void HarmonicBalanceSolver::Implementation::predict(double w, const Orders& orde
     start_stuck();
     return;
   }
-  SliderSeries sum;
+  series.orders = orders;
+  series.has_mean = with_mean;
+  series.mean.setZero(m);
+  series.coefficients.setZero(orders.count, m);
   for (std::size_t a = 0; a < usable.size(); ++a) {
     double weight = 1.0;
     for (std::size_t b = 0; b < usable.size(); ++b)
       if (b != a)
         weight *= (w - usable[b]->angular_frequency) / (usable[a]->angular_frequency - usable[b]->angular_frequency);
-    SliderSeries part = usable[a]->series;
-    part.resize(orders, with_mean, m);
-    if (a == 0) {
-      sum = part;
-      sum.coefficients *= weight;
-      sum.mean *= weight;
-    } else {
-      sum.coefficients += weight * part.coefficients;
-      sum.mean += weight * part.mean;
-    }
+    const SliderSeries& part = usable[a]->series;
+    const int common = std::min(orders.count, part.orders.count);
+    series.coefficients.topRows(common) += weight * part.coefficients.topRows(common);
+    series.mean += weight * part.mean;
   }
-  series = std::move(sum);
 }
 
 // The linear answer with all sliders stuck at their offsets: one Newton step from rest takes it, since a loop that does
@@ -267,14 +270,13 @@ void HarmonicBalanceSolver::Implementation::start_stuck() {
   Vector unlimited = Vector::Constant(stiffness.size(), 0.0);
   for (Index j = 0; j < unlimited.size(); ++j)
     if (last.limits[j] > 0.0) unlimited[j] = infinity;
-  equations.front().set(harmonics, unlimited, offsets, series.orders.highest());
+  equations.front().set(harmonics, unlimited, offsets);
   equations.front().solve(series, options.residual_tolerance, 3);
 }
 
 bool HarmonicBalanceSolver::Implementation::newton(const Excitation& excitation, SteadyResponse& response) {
   auto& eq = equations.front();
-  eq.set(harmonics, excitation.limits, offsets, static_cast<int>(harmonics.size()) * series.orders.stride);
-  SliderSeries guess = series;
+  eq.set(harmonics, excitation.limits, offsets);
   auto outcome = eq.solve(series, options.residual_tolerance, most_iterations);
   response.iterations += outcome.iterations;
   if (!outcome.has_converged) {
@@ -282,8 +284,8 @@ bool HarmonicBalanceSolver::Implementation::newton(const Excitation& excitation,
     int iterations = 0;
     const bool done = lower_the_limits(excitation, iterations);
     response.iterations += iterations;
-    eq.set(harmonics, excitation.limits, offsets, static_cast<int>(harmonics.size()) * series.orders.stride);
-    if (!done) series = guess;
+    eq.set(harmonics, excitation.limits, offsets);
+    if (!done) start_stuck();
     outcome = eq.solve(series, options.residual_tolerance, most_iterations);
     response.iterations += outcome.iterations;
   }
@@ -300,7 +302,6 @@ bool HarmonicBalanceSolver::Implementation::lower_the_limits(const Excitation& e
       factor = std::max(factor,
                         stiffness[j] * eq.loops()[static_cast<std::size_t>(j)].range() / (2.0 * excitation.limits[j]));
   double logarithm = std::log(factor), step = std::min(0.25 * logarithm, 1.0);
-  const int reach = static_cast<int>(harmonics.size()) * series.orders.stride;
   SliderSeries reached = series, before;
   double logarithm_before = logarithm;
   for (int tries = 0; logarithm > 0.0 && tries < 400; ++tries) {
@@ -311,7 +312,7 @@ bool HarmonicBalanceSolver::Implementation::lower_the_limits(const Excitation& e
       series.coefficients += part * (reached.coefficients - before.coefficients);
       series.mean += part * (reached.mean - before.mean);
     }
-    eq.set(harmonics, std::exp(next) * excitation.limits, offsets, reach);
+    eq.set(harmonics, std::exp(next) * excitation.limits, offsets);
     const auto outcome = eq.solve(series, options.residual_tolerance, 12);
     iterations += outcome.iterations;
     if (outcome.has_converged) {
@@ -380,7 +381,7 @@ double HarmonicBalanceSolver::Implementation::truncation_error(int probes) {
     }
   }
   const double largest = size.maxCoeff();
-  return largest > 0.0 ? change.maxCoeff() / largest : 0.0;
+  return largest > 0.0 ? safety * change.maxCoeff() / largest : 0.0;
 }
 
 void HarmonicBalanceSolver::Implementation::fill_unbounded(SteadyResponse& response) const {
@@ -492,9 +493,8 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
 
   for (bool is_first = true;; is_first = false) {
     const Orders orders{stride, count};
-    s.series.orders.stride = stride;
     const int probes = s.orders_to_probe(excitation, orders);
-    s.is_unbounded = !s.condense(excitation, count + probes, !is_symmetric);
+    s.is_unbounded = !s.condense(excitation, stride, count + probes, !is_symmetric);
     if (s.is_unbounded) {
       s.fill_unbounded(response);
       return;
@@ -517,8 +517,10 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   }
   s.fill(excitation, response);
   if (response.status == SteadyStatus::converged) {
-    if (s.past.size() == 3) s.past.pop_back();
-    s.past.insert(s.past.begin(), {excitation.angular_frequency, s.series});
+    if (s.past.size() < 3) s.past.emplace_back();
+    std::rotate(s.past.begin(), s.past.end() - 1, s.past.end());
+    s.past.front().angular_frequency = excitation.angular_frequency;
+    s.past.front().series = s.series;
   } else {
     s.past.clear();
   }

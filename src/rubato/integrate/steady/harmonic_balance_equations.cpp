@@ -22,11 +22,10 @@ void SliderSeries::resize(const Orders& new_orders, bool with_mean, Index slider
 }
 
 void HarmonicBalanceEquations::set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits,
-                                   const Vector& offsets, int reach) {
+                                   const Vector& offsets) {
   harmonics_ = &harmonics;
   limits_ = limits;
   offsets_ = offsets;
-  reach_ = reach;
   active_.clear();
   // A slider without a limit has no force, but where its spring is held in Z its displacement must be known.
   const bool is_held = std::any_of(harmonics.begin(), harmonics.end(), [](const auto& h) { return h.held > 0.0; });
@@ -49,7 +48,7 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   for (const Index j : active_) {
     HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     const Complex* const u = series.coefficients.data() + j * count;
-    loop.pass(stiffness_[j], limits_[j], series.mean[j], series.orders, u, offsets_[j], reach_);
+    loop.pass(stiffness_[j], limits_[j], series.mean[j], series.orders, u, offsets_[j]);
     for (int i = 0; i < count; ++i) {
       const double held = harmonics[static_cast<std::size_t>(i) + 1].held * stiffness_[j];
       force_(i, j) = loop.force(series.orders.at(i)) - held * u[i];
@@ -82,12 +81,12 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   return residual_.size() == 0 ? 0.0 : residual_.cwiseAbs().maxCoeff();
 }
 
-void HarmonicBalanceEquations::factorise(const SliderSeries& series) {
+void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix& jacobian) {
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   const auto& harmonics = *harmonics_;
   const Index size = rows * static_cast<Index>(active_.size());
-  jacobian_.setIdentity(size, size);
+  jacobian.setIdentity(size, size);
   columns_.resize(count, rows);  // dF_k of one slider by its own unknowns
   Vector by_mean(rows);
   for (std::size_t b = 0; b < active_.size(); ++b) {
@@ -113,7 +112,7 @@ void HarmonicBalanceEquations::factorise(const SliderSeries& series) {
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const Index row = active_[a], base = static_cast<Index>(a) * rows;
       for (Index c = 0; c < rows; ++c) {
-        double* const out = jacobian_.data() + (from + c) * size + base;
+        double* const out = jacobian.data() + (from + c) * size + base;
         if (series.has_mean) out[0] += harmonics[0].receptance(row, j).real() * by_mean[c];
         for (int i = 0; i < count; ++i) {
           const Complex change = product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), columns_(i, c));
@@ -123,15 +122,23 @@ void HarmonicBalanceEquations::factorise(const SliderSeries& series) {
       }
     }
   }
-  factor_.compute(jacobian_);
 }
 
-void HarmonicBalanceEquations::solve_linear(const Vector& right, Vector& x) {
-  x.noalias() = factor_.solve(right);
-  const auto pivots = factor_.matrixLU().diagonal().cwiseAbs();
+void HarmonicBalanceEquations::factorise(const SliderSeries& series) {
+  fill_jacobian(series, factor_.matrix(rows_per_slider(series) * static_cast<Index>(active_.size())));
+  is_regular_ = factor_.factorise() > 1e-13;
+}
+
+// x <- J^-1 x
+void HarmonicBalanceEquations::solve_linear(const SliderSeries& series, Vector& x) {
+  if (is_regular_) {
+    factor_.solve(x);
+    return;
+  }
   // A mean position that nothing determines: the least change.
-  if (!(pivots.minCoeff() > 1e-13 * pivots.maxCoeff()) || !x.allFinite())
-    x = jacobian_.completeOrthogonalDecomposition().solve(right);
+  Matrix jacobian(x.size(), x.size());
+  fill_jacobian(series, jacobian);
+  x = jacobian.completeOrthogonalDecomposition().solve(x).eval();
 }
 
 HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& series, double tolerance,
@@ -140,7 +147,7 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   Outcome outcome;
   double size = evaluate(series);
-  SliderSeries trial = series;
+  trial_ = series;
   for (;;) {
     // Round-off of the linear part bounds what can be reached.
     const double reachable = std::max(tolerance * displacement_, 8e-15 * linear_);
@@ -149,19 +156,20 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
     if (outcome.has_converged || outcome.iterations >= most_iterations || !std::isfinite(size)) break;
     ++outcome.iterations;
     factorise(series);
-    solve_linear(residual_, step_);
+    step_ = residual_;
+    solve_linear(series, step_);
     if (!step_.allFinite()) break;
     double part = 1.0, next = 0.0;
     bool is_better = false;
     for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
       for (std::size_t a = 0; a < active_.size(); ++a) {
         const Index j = active_[a], base = static_cast<Index>(a) * rows;
-        if (series.has_mean) trial.mean[j] = series.mean[j] - part * step_[base];
+        if (series.has_mean) trial_.mean[j] = series.mean[j] - part * step_[base];
         for (int i = 0; i < count; ++i)
-          trial.coefficients(i, j) =
+          trial_.coefficients(i, j) =
               series.coefficients(i, j) - part * Complex(step_[base + shift + 2 * i], step_[base + shift + 2 * i + 1]);
       }
-      next = evaluate(trial);
+      next = evaluate(trial_);
       is_better = next < (1.0 - 0.1 * part) * size;
       if (is_better) break;
     }
@@ -171,8 +179,8 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
       outcome.has_converged = size <= 100.0 * reachable;
       break;
     }
-    std::swap(series.mean, trial.mean);
-    std::swap(series.coefficients, trial.coefficients);
+    std::swap(series.mean, trial_.mean);
+    std::swap(series.coefficients, trial_.coefficients);
     size = next;
   }
   return outcome;
@@ -189,15 +197,16 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   forces_left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
   force_change.setZero(count, stiffness_.size());
   if (!any_slips()) return;
+  for (const Index j : active_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
 
   // Each order alone, with its own part in the force: U + R (F + dF U) = 0.
-  Matrix own(2 * m, 2 * m);
   Vector right(2 * m);
   std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
   for (std::size_t p = first; p < end; ++p) {
     const CondensedHarmonic& harmonic = harmonics[p];
     const int k = series.orders.at(static_cast<int>(p) - 1);
     const auto place = static_cast<Index>(p - first);
+    Matrix& own = own_factor_.matrix(2 * m);
     own.setIdentity();
     right.setZero();
     for (Index b = 0; b < m; ++b) {
@@ -220,18 +229,19 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
         right[2 * a + 1] -= f.imag();
       }
     }
-    const Vector u = own.partialPivLu().solve(right);
+    own_factor_.factorise();
+    own_factor_.solve(right);
     for (Index b = 0; b < m; ++b) {
       const Index j = active_[static_cast<std::size_t>(b)];
       const auto at = static_cast<std::size_t>(b);
-      left_out(place, j) = Complex(u[2 * b], u[2 * b + 1]);
-      forces_left_out(place, j) +=
-          u[2 * b] * by_real[at] + u[2 * b + 1] * by_imaginary[at] - harmonic.held * stiffness_[j] * left_out(place, j);
+      left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
+      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at] -
+                                   harmonic.held * stiffness_[j] * left_out(place, j);
     }
   }
 
   // What that does to the orders kept.
-  if (factor_.matrixLU().rows() != rows * m) factorise(series);
+  if (factor_.size() != rows * m) factorise(series);
   Vector mean_change = Vector::Zero(stiffness_.size());
   for (const Index j : active_) {
     const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
@@ -265,13 +275,12 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       change[a * rows + shift + 2 * i + 1] = sum.imag();
     }
   }
-  Vector kept;
-  solve_linear(change, kept);
+  solve_linear(series, change);
   for (Index b = 0; b < m; ++b) {
     const Index j = active_[static_cast<std::size_t>(b)];
     const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     for (int l = 0; l < count; ++l) {
-      const double re = kept[b * rows + shift + 2 * l], im = kept[b * rows + shift + 2 * l + 1];
+      const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
       force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * stiffness_[j] * Complex(re, im);
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;

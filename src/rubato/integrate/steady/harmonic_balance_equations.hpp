@@ -2,8 +2,7 @@
 
 #include <rubato/integrate/steady/condensed_structure.hpp>
 #include <rubato/integrate/steady/hysteresis_loop.hpp>
-
-#include <Eigen/LU>
+#include <rubato/integrate/steady/small_lu.hpp>
 
 #include <vector>
 
@@ -36,8 +35,7 @@ class HarmonicBalanceEquations {
   }
 
   /// @param harmonics  place 0: the mean (unused without it); place 1 + i: order i, at least as many as unknown orders
-  /// @param reach      highest order for which forces will be asked
-  void set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits, const Vector& offsets, int reach);
+  void set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits, const Vector& offsets);
 
   struct Outcome {
     bool has_converged = false;
@@ -60,7 +58,8 @@ class HarmonicBalanceEquations {
  private:
   double evaluate(const SliderSeries& series);
   void factorise(const SliderSeries& series);
-  void solve_linear(const Vector& right, Vector& x);
+  void fill_jacobian(const SliderSeries& series, Matrix& jacobian);
+  void solve_linear(const SliderSeries& series, Vector& x);
   Index rows_per_slider(const SliderSeries& series) const {
     return (series.has_mean ? 1 : 0) + 2 * series.orders.count;
   }
@@ -68,15 +67,15 @@ class HarmonicBalanceEquations {
   Vector stiffness_;
   const std::vector<CondensedHarmonic>* harmonics_ = nullptr;
   Vector limits_, offsets_;
-  int reach_ = 0;
   std::vector<Index> active_;
   std::vector<HysteresisLoop> loops_;
   ComplexMatrix force_;  ///< F_k - held kT U_k [count x m]
   Vector mean_force_;
   Vector residual_, step_;
-  Matrix jacobian_;
   ComplexMatrix columns_;
-  Eigen::PartialPivLU<Matrix> factor_;
+  SmallLu factor_, own_factor_;
+  bool is_regular_ = true;
+  SliderSeries trial_;
   double displacement_ = 0.0, linear_ = 0.0;
 };
 

@@ -10,14 +10,12 @@ using std::numbers::pi;
 }
 
 void HysteresisLoop::pass(double stiffness, double limit, double mean, const Orders& orders,
-                          const Complex* coefficients, double offset, int reach) {
+                          const Complex* coefficients, double offset) {
   stiffness_ = stiffness;
   limit_ = limit;
   mean_ = mean;
   orders_ = orders;
   coefficients_ = coefficients;
-  reach_ = std::max(reach, orders.highest());
-  integral_reach_ = reach_ + orders.highest();
   pieces_.clear();
   offset_ = 0.0;
   offset_is_bound_ = false;
@@ -41,18 +39,7 @@ void HysteresisLoop::pass(double stiffness, double limit, double mean, const Ord
   piece.reversal = points[0].angle;
   piece.u_reversal = highest;
   piece.force_reversal = limit;
-  Complex at_reversal = points[0].unit_vector;
-  const auto row = static_cast<std::size_t>(reach_ + 1);
-  powers_.clear();
-  const auto put_powers = [&](Complex z) {
-    const std::size_t from = powers_.size();
-    powers_.resize(from + row);
-    Complex power = 1.0;
-    for (std::size_t k = 0; k < row; ++k) {
-      powers_[from + k] = power;
-      power = product(power, z);
-    }
-  };
+  piece.at_reversal = points[0].unit_vector;
   const std::size_t stretches = turning_.is_half() ? points.size() - 1 : points.size();
   for (std::size_t i = 0; i < stretches; ++i) {
     const auto& low = points[i];
@@ -62,15 +49,13 @@ void HysteresisLoop::pass(double stiffness, double limit, double mean, const Ord
     if (std::abs(trial) <= limit) continue;
     piece.sign = trial > 0.0 ? 1.0 : -1.0;
     piece.u_start = piece.u_reversal + (piece.sign * limit - piece.force_reversal) / stiffness;
-    const Complex at_start =
+    piece.at_start =
         angle_of_value(orders, coefficients, piece.u_start, low.angle, low.value, high.angle, high.value, piece.start);
     piece.end = high.angle;
     piece.u_end = high.value;
-    put_powers(at_reversal);
-    put_powers(at_start);
-    put_powers(high.unit_vector);
+    piece.at_end = high.unit_vector;
     pieces_.push_back(piece);
-    at_reversal = high.unit_vector;
+    piece.at_reversal = piece.at_end;
     piece.reversal = piece.end;
     piece.u_reversal = piece.u_end;
     piece.force_reversal = piece.sign * limit;
@@ -82,25 +67,43 @@ void HysteresisLoop::pass(double stiffness, double limit, double mean, const Ord
     piece.sign = 0.0;
     piece.start = piece.end = closing;
     piece.u_start = piece.u_end = highest;
-    put_powers(at_reversal);
-    put_powers(points[0].unit_vector);
-    put_powers(points[0].unit_vector);
+    piece.at_start = piece.at_end = points[0].unit_vector;
     pieces_.push_back(piece);
   }
 
-  // Integrals of exp(i p theta) for p up to twice the reach; in half a period, of even p alone.
-  slip_integrals_.resize(pieces_.size() * static_cast<std::size_t>(integral_reach_ + 1));
+  extend(orders.highest());
+}
+
+void HysteresisLoop::extend(int highest_order) {
+  reach_ = highest_order;
+  if (!slips_) return;
+  const auto row = static_cast<std::size_t>(reach_ + 1), integrals = static_cast<std::size_t>(2 * reach_ + 1);
+  powers_.resize(3 * pieces_.size() * row);
+  slip_integrals_.resize(pieces_.size() * integrals);
+  // In half a period odd orders meet odd ones: differences of their orders are even.
+  const int stride = turning_.is_half() ? 2 : 1;
   for (std::size_t j = 0; j < pieces_.size(); ++j) {
-    Complex* const out = slip_integrals_.data() + j * static_cast<std::size_t>(integral_reach_ + 1);
-    const int r = static_cast<int>(3 * j);
-    const Complex zs = powers(r + 1)[1], ze = powers(r + 2)[1];
-    out[0] = pieces_[j].end - pieces_[j].start;
+    const Piece& piece = pieces_[j];
+    Complex* out = powers_.data() + 3 * j * row;
+    for (const Complex z : {piece.at_reversal, piece.at_start, piece.at_end}) {
+      const Complex factor = stride == 1 ? z : product(z, z);
+      Complex power = z;
+      for (int k = 1; k <= reach_; k += stride) {
+        out[k] = power;
+        power = product(power, factor);
+      }
+      out += row;
+    }
+    Complex* const integral = slip_integrals_.data() + j * integrals;
+    integral[0] = piece.end - piece.start;
+    const Complex start = stride == 1 ? piece.at_start : product(piece.at_start, piece.at_start);
+    const Complex end = stride == 1 ? piece.at_end : product(piece.at_end, piece.at_end);
     Complex ps = 1.0, pe = 1.0;
-    for (int p = 1; p <= integral_reach_; ++p) {
-      ps = product(ps, zs);
-      pe = product(pe, ze);
-      const Complex difference = pe - ps;
-      out[p] = Complex(difference.imag(), -difference.real()) / static_cast<double>(p);
+    for (int p = stride; p <= 2 * reach_; p += stride) {
+      ps = product(ps, start);
+      pe = product(pe, end);
+      const double inverse = 1.0 / p;
+      integral[p] = Complex((pe.imag() - ps.imag()) * inverse, (ps.real() - pe.real()) * inverse);
     }
   }
 }

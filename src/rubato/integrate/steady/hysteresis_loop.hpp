@@ -20,12 +20,13 @@ namespace rubato::integrate {
 /// since the slip begins where u(s) = u(r) +- 2 limit / kT or so, and u' vanishes at e.
 class HysteresisLoop {
  public:
-  /// @param limit      >= 0 [N]; without one the slider has no force
-  /// @param offset     what a slider that never slips should have as fc - kT u [N]; it gets the nearest that it can
-  /// bear
-  /// @param reach      the highest order k for which forces and derivatives will be asked
+  /// Finds the loop, for forces and derivatives of the orders of u.
+  /// @param limit   >= 0 [N]; without one the slider has no force
+  /// @param offset  what a slider that never slips should have as fc - kT u [N]; it gets the nearest that it can bear
   void pass(double stiffness, double limit, double mean, const Orders& orders, const Complex* coefficients,
-            double offset, int reach);
+            double offset);
+  /// Prepares forces and derivatives of orders up to this one.
+  void extend(int highest_order);
 
   bool slips() const { return slips_; }
   double offset() const { return offset_; }  ///< of a slider that never slips, else 0 [N]
@@ -51,14 +52,15 @@ class HysteresisLoop {
   struct Piece {
     double reversal, start, end;  ///< angles: sticks from the first to the second, slips up to the third
     double u_reversal, u_start, u_end;
-    double sign;            ///< of the slip; 0 where none ends the sticking
-    double force_reversal;  ///< fc at the reversal
+    double sign;                            ///< of the slip; 0 where none ends the sticking
+    double force_reversal;                  ///< fc at the reversal
+    Complex at_reversal, at_start, at_end;  ///< exp(i theta)
   };
   const Complex* powers(int row) const { return powers_.data() + static_cast<std::ptrdiff_t>(row) * (reach_ + 1); }
   /// Integral of exp(i p theta) over the slip of a piece.
   Complex slip_integral(std::size_t piece, int p) const {
-    const Complex value = slip_integrals_[piece * static_cast<std::size_t>(integral_reach_ + 1) +
-                                          static_cast<std::size_t>(p < 0 ? -p : p)];
+    const Complex value =
+        slip_integrals_[piece * static_cast<std::size_t>(2 * reach_ + 1) + static_cast<std::size_t>(p < 0 ? -p : p)];
     return p < 0 ? std::conj(value) : value;
   }
 
@@ -69,7 +71,7 @@ class HysteresisLoop {
   Orders orders_;
   const Complex* coefficients_ = nullptr;
   double stiffness_ = 0.0, limit_ = 0.0, mean_ = 0.0, offset_ = 0.0;
-  int reach_ = 0, integral_reach_ = 0;
+  int reach_ = 0;  ///< the highest order prepared
   bool is_idle_ = false, slips_ = false, offset_is_bound_ = false, offset_at_top_ = false;
 };
 
