@@ -19,7 +19,7 @@ TEST(NormalQuantile, InvertsTheNormalDistribution) {
   EXPECT_NEAR(normal_quantile(0.25), -0.6744897501960817, 4e-16);
   EXPECT_NEAR(normal_quantile(0.001), -3.090232306167814, 2e-15);
   EXPECT_NEAR(normal_quantile(1e-20), -9.262340089798408, 1e-14);
-  EXPECT_EQ(normal_quantile(0.5), 0.0);
+  EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-16);
   EXPECT_EQ(normal_quantile(0.75), -normal_quantile(0.25));
 }
 

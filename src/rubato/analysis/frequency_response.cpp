@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -187,8 +188,8 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
     progress.add(static_cast<long>(result.counts.points()));
   }
 
-  const int threads = context.threads > 0 ? context.threads : tbb::task_arena::automatic;
-  tbb::task_arena arena(threads);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
   arena.execute([&] {
     using Shared = std::shared_ptr<PieceResult>;
     const auto tokens = static_cast<std::size_t>(4 * std::max(1, arena.max_concurrency()));

@@ -235,13 +235,19 @@ int PieceSolver::lanes() {
   return solver_->lanes();
 }
 
-std::string PieceSolver::reason(long line, std::size_t step) {
+/// The first lane with one point of a line.
+PieceSolver::Lane& PieceSolver::take_point(long line, std::size_t step) {
   Lane& mine = lane(0);
   take_line(mine, line);
+  require_structure(mine, point_value(step));
+  mine.drive->take_line(mine.values, *structure_);
+  mine.drive->take_point(point_value(step), excitations_[0]);
+  return mine;
+}
+
+std::string PieceSolver::reason(long line, std::size_t step) {
   try {
-    require_structure(mine, point_value(step));
-    mine.drive->take_line(mine.values, *structure_);
-    mine.drive->take_point(point_value(step), excitations_[0]);
+    (void)take_point(line, step);
     solver_->forget();
     solver_->solve(excitations_[0], plan_.start, responses_[0]);
   } catch (const InvalidInput& fault) {
@@ -251,8 +257,7 @@ std::string PieceSolver::reason(long line, std::size_t step) {
 }
 
 std::vector<ParametricExcitation::NegativeLoad> PieceSolver::negative_loads(long line, std::size_t step) {
-  if (!reason(line, step).empty()) return {};
-  return lanes_[0].drive->negative_loads();
+  return take_point(line, step).drive->negative_loads();
 }
 
 }  // namespace rubato::analysis

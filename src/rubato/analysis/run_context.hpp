@@ -26,7 +26,7 @@ struct RunContext {
   results::Sink& sink;
   Progress& progress;
   const std::atomic<bool>& stop;
-  int threads = 0;                      ///< at most so many; 0: one a core
+  int threads = 0;                      ///< at most so many, and one a core; 0: one a core
   results::Journal* journal = nullptr;  ///< where finished pieces are kept; those in it are not computed again
 };
 

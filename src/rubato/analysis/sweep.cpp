@@ -10,6 +10,7 @@ namespace rubato::analysis {
 namespace {
 
 constexpr double most_lines = 1e12;   // beyond it nobody waits
+constexpr double most_values = 1e7;   // of a range
 constexpr double most_samples = 1e8;  // of numbers kept in memory
 
 Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
@@ -36,9 +37,9 @@ std::vector<double> values_of(const model::ValuesDescription& description, const
   const double from = model::evaluate(description.from, parameters, what + ": from");
   const double to = model::evaluate(description.to, parameters, what + ": to");
   const double points = whole_number(description.points, parameters, what + ": points", where);
-  if (points > most_samples)
+  if (points > most_values)
     throw InvalidInput(where,
-                       fmt::format("{}: {:.3g} points are more than can be kept ({:.0g})", what, points, most_samples));
+                       fmt::format("{}: {:.3g} points are more than can be kept ({:.0g})", what, points, most_values));
   if (!(from <= to))
     throw InvalidInput(where, fmt::format("{}: the range from {} to {} is reversed; write from = {}, to = {}", what,
                                           from, to, to, from));

@@ -23,9 +23,9 @@ class Digest {
     for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     value_ = (value_ ^ 0xffu) * 0x100000001b3u;  // the end of a text
   }
-  void take(double number) { take({reinterpret_cast<const char*>(&number), sizeof number}); }
+  void take(double number) { take(std::string_view(reinterpret_cast<const char*>(&number), sizeof number)); }
   void take(const std::vector<double>& numbers) {
-    take({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)});
+    take(std::string_view(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)));
   }
   void take(const model::MatrixDescription& matrix) {
     for (const auto& entry : matrix.entries) {
