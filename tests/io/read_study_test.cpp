@@ -60,8 +60,9 @@ TEST(StudyFileError, IsSaidOfAnEmptyFile) {
   const std::string message = "study.toml: error: the file is empty; `rubato example` shows what a study looks like";
   EXPECT_EQ(verdict(""), message);
   EXPECT_EQ(verdict(" \n\t\r\n"), message);
-  EXPECT_EQ(verdict("# only words\n"),
-            "study.toml:1:1: error: the study has no [[coordinate]] and no [matrices]; it needs one of them");
+  EXPECT_EQ(
+      verdict("# only words\n"),
+      "study.toml:1:1: error: the study has no [[coordinate]], no [[node]] and no [matrices]; it needs one of them");
 }
 
 TEST(StudyFileError, IsSaidOfABinaryFile) {

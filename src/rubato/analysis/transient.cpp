@@ -116,6 +116,12 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
       what = "the effective matrix of the step cannot be factorised";
       remedy = "look for a negative stiffness or damping, or take a smaller step";
       break;
+    case integrate::StepOutcome::too_small:
+      what = "the error asked for a step below the smallest";
+      remedy =
+          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller "
+          "step, or a larger tolerance";
+      break;
     case integrate::StepOutcome::accepted:
       break;
   }

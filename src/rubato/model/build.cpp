@@ -1,3 +1,4 @@
+#include <rubato/model/build_structure.hpp>
 #include <rubato/model/model.hpp>
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace rubato::model {
 namespace {
@@ -23,6 +25,7 @@ class Builder {
       take_matrices(*description_.matrices);
     else
       take_coordinates();
+    if (!description_.structure.is_empty()) take_structure();
     take_springs();
     take_damping();
     take_sliders();
@@ -45,28 +48,11 @@ class Builder {
     return value;
   }
 
-  // Names head the columns of CSV files and of "a - b" in `observe`.
-  static void refuse_unfit(const std::string& name, const Location& where) {
-    const auto is_unfit = [](unsigned char c) {
-      return c < 0x20 || c == 0x7f || c == ',' || c == ';' || c == '"' || c == '/';
-    };
-    if (name.front() != ' ' && name.back() != ' ' && name.find(" - ") == std::string::npos &&
-        std::none_of(name.begin(), name.end(), is_unfit))
-      return;
-    std::string shown = name;
-    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-    std::replace_if(shown.begin(), shown.end(), is_control, '?');
-    throw InvalidInput(
-        where, fmt::format("the name \"{}\" cannot head a column of results: no comma, semicolon, quote, slash, "
-                           "control character, \" - \", or space at its ends",
-                           shown));
-  }
-
   void add_coordinate(const std::string& name, const Location& where) {
     if (name.empty() || name == "ground")
       throw InvalidInput(where, name.empty() ? "a coordinate needs a name"
                                              : "the name \"ground\" is taken: it stands for what does not move");
-    refuse_unfit(name, where);
+    refuse_unfit_name(name, where);
     if (!places_.emplace(name, static_cast<Index>(model_.coordinates.size())).second)
       throw InvalidInput(where, fmt::format("two coordinates are called \"{}\"", name));
     model_.coordinates.push_back(name);
@@ -74,8 +60,9 @@ class Builder {
 
   void take_coordinates() {
     const auto n = static_cast<Index>(description_.coordinates.size());
-    if (n == 0)
-      throw InvalidInput(description_.where, "the study has no [[coordinate]] and no [matrices]; it needs one of them");
+    if (n == 0 && description_.structure.is_empty())
+      throw InvalidInput(description_.where,
+                         "the study has no [[coordinate]], no [[node]] and no [matrices]; it needs one of them");
     model_.mass.resize(n);
     model_.position.resize(n);
     model_.velocity.resize(n);
@@ -95,6 +82,29 @@ class Builder {
       model_.position[i] = number(c.position, what + "position");
       model_.velocity[i] = number(c.velocity, what + "velocity");
     }
+  }
+
+  void take_structure() {
+    BuiltStructure built = build_structure(description_.structure, parameters_, model_.size());
+    const Index before = model_.size(), n = before + static_cast<Index>(built.coordinates.size());
+    for (Vector* values : {&model_.mass, &model_.position, &model_.velocity}) {
+      values->conservativeResize(n);
+      values->tail(n - before).setZero();
+    }
+    model_.is_rotation.assign(static_cast<std::size_t>(n), 0);
+    for (NodeCoordinate& coordinate : built.coordinates) {
+      const Index place = model_.size();
+      if (!places_.emplace(coordinate.name, place).second)
+        throw InvalidInput(description_.structure.nodes.front().where,
+                           fmt::format("a coordinate and a degree of freedom are both called \"{}\"; rename the "
+                                       "coordinate",
+                                       coordinate.name));
+      model_.mass[place] = coordinate.mass;
+      model_.is_rotation[static_cast<std::size_t>(place)] = coordinate.is_rotation;
+      model_.coordinates.push_back(std::move(coordinate.name));
+    }
+    model_.structure = std::move(built.structure);
+    fixed_ = std::move(built.fixed);
   }
 
   SparseMatrix to_sparse(const MatrixDescription& matrix, int size) const {
@@ -138,6 +148,7 @@ class Builder {
     if (!description_.coordinates.empty()) refuse(description_.coordinates.front().where, "coordinate");
     if (!description_.springs.empty()) refuse(description_.springs.front().where, "spring");
     if (!description_.dampers.empty()) refuse(description_.dampers.front().where, "damper");
+    if (!description_.structure.is_empty()) refuse(description_.structure.nodes.front().where, "node");
     const int size = matrices.mass.size;
     require_masses(matrices);  // before anything of that size is made: the head of a file may announce any
     if (!matrices.names.empty() && static_cast<int>(matrices.names.size()) != size)
@@ -186,6 +197,8 @@ class Builder {
   Index find(const std::string& name, const Location& where, const std::string& role) const {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
+    if (fixed_.count(name) > 0) throw InvalidInput(where, fmt::format("{} \"{}\", which a support holds", role, name));
+    refuse_missing_axis(name, where, role);
     const std::vector<std::string> what_does_not_move{"ground"};
     const bool means_ground =
         nearest_name(name, model_.coordinates).empty() && !nearest_name(name, what_does_not_move).empty();
@@ -193,14 +206,42 @@ class Builder {
                                           suggestion(name, means_ground ? what_does_not_move : model_.coordinates)));
   }
 
+  /// A node that exists, and a degree of freedom that it has not.
+  void refuse_missing_axis(const std::string& name, const Location& where, const std::string& role) const {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos) return;
+    const auto& nodes = model_.structure.names;
+    const std::string node = name.substr(0, dot), axis = name.substr(dot + 1);
+    if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) return;
+    const bool in_plane = model_.structure.dimension == 2;
+    const bool is_axis = in_plane ? axis == "x" || axis == "y" || axis == "rz"
+                                  : std::find(axis_names.begin(), axis_names.end(), axis) != axis_names.end();
+    if (is_axis)
+      throw InvalidInput(where, fmt::format("{} \"{}\", and node \"{}\" has no inertia in {}: join it by a beam, or "
+                                            "give it a [[mass]] with {}",
+                                            role, name, node, axis, axis.front() == 'r' ? "an inertia" : "a mass"));
+    throw InvalidInput(where, fmt::format("{} \"{}\", but a node has {}", role, name,
+                                          in_plane ? "x, y, rz in the plane" : "x, y, z, rx, ry, rz in space"));
+  }
+
+  bool is_rotation_at(Index place) const {
+    return !model_.is_rotation.empty() && model_.is_rotation[static_cast<std::size_t>(place)];
+  }
+
   void join(const Between& names, const std::array<Location, 2>& where, const std::string& part, Index& first,
             Index& second) const {
     const auto end = [&](std::size_t i) {
-      return names[i] == "ground" ? ground : find(names[i], where[i], part + " joins");
+      return names[i] == "ground" || fixed_.count(names[i]) > 0 ? ground : find(names[i], where[i], part + " joins");
     };
     first = end(0);
     second = end(1);
-    if (first == second) throw InvalidInput(where[1], fmt::format("{} joins \"{}\" with itself", part, names[1]));
+    if (first == second && names[0] == names[1])
+      throw InvalidInput(where[1], fmt::format("{} joins \"{}\" with itself", part, names[1]));
+    if (first == second)
+      throw InvalidInput(where[1],
+                         fmt::format("{} joins \"{}\" with \"{}\", and neither moves", part, names[0], names[1]));
+    if (first != ground && second != ground && is_rotation_at(first) != is_rotation_at(second))
+      throw InvalidInput(where[1], fmt::format("{} joins a displacement [m] and a rotation [rad]", part));
   }
 
   void take_springs() {
@@ -257,7 +298,7 @@ class Builder {
     for (const SliderDescription& description : description_.sliders) {
       const std::string part = fmt::format("slider \"{}\"", description.name);
       if (description.name.empty()) throw InvalidInput(description.where, "a slider needs a name");
-      refuse_unfit(description.name, description.where);
+      refuse_unfit_name(description.name, description.where);
       for (const Slider& other : model_.sliders)
         if (other.name == description.name)
           throw InvalidInput(description.where, fmt::format("two sliders are called \"{}\"", description.name));
@@ -331,6 +372,7 @@ class Builder {
   const Parameters& parameters_;
   Model model_;
   std::unordered_map<std::string, Index> places_;
+  std::unordered_set<std::string> fixed_;
 };
 
 }  // namespace

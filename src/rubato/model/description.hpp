@@ -1,7 +1,7 @@
 #pragma once
 
-#include <rubato/core/error.hpp>
-#include <rubato/numerics/expression.hpp>
+#include <rubato/model/quantity.hpp>
+#include <rubato/model/structure_description.hpp>
 
 #include <array>
 #include <optional>
@@ -13,18 +13,6 @@
 // A study as the user wrote it: plain values with the place of each, nothing evaluated. Every number may be a formula
 // of the parameters. io/read_study fills it from a file; a C++ program may fill it by hand.
 namespace rubato::model {
-
-/// A number or, where `expression` is not empty, a formula of the parameters.
-struct Quantity {
-  double value = 0.0;
-  std::string expression;
-  Location where;
-
-  Quantity() = default;
-  Quantity(double number) : value(number) {}  // implicit: descriptions written in C++ read like the file
-  Quantity(std::string formula) : expression(std::move(formula)) {}
-  Quantity(const char* formula) : expression(formula) {}
-};
 
 struct ParameterDescription {
   std::string name;
@@ -152,6 +140,7 @@ struct MatricesDescription {
 struct ModelDescription {
   std::vector<CoordinateDescription> coordinates;
   std::optional<MatricesDescription> matrices;
+  StructureDescription structure;
   std::vector<SpringDescription> springs;
   std::vector<DamperDescription> dampers;
   DampingDescription damping;
@@ -217,10 +206,6 @@ struct StudyDescription {
   ModelDescription model;
   std::vector<AnalysisDescription> analyses;
 };
-
-/// The value of a quantity. Throws InvalidInput, at its place, for a faulty formula or a non-finite value; `what` names
-/// the key in the message.
-double evaluate(const Quantity& quantity, const numerics::Parameters& parameters, const std::string& what);
 
 /// The values of the parameters, each a formula of those before it; `overrides` (from --set) replace values and must
 /// name known parameters. Throws InvalidInput.

@@ -2,6 +2,7 @@
 
 #include <rubato/core/types.hpp>
 #include <rubato/model/description.hpp>
+#include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
 #include <rubato/numerics/expression.hpp>
 
@@ -56,9 +57,11 @@ using Damping = std::variant<std::monostate, ModalDampingRatios, RayleighCoeffic
 /// A structure of coordinates with values for everything: validated, immutable by convention once built.
 struct Model {
   std::vector<std::string> coordinates;  ///< names, [n]
-  Vector mass;                           ///< [n] [kg]; unused where `matrices` is set
+  std::vector<char> is_rotation;         ///< [n]; empty where there are no nodes: all are displacements
+  Vector mass;                           ///< [n] [kg] or [kg m2], without elements; unused where `matrices` is set
   Vector position, velocity;             ///< at the start, [n] [m], [m/s]
   std::vector<LinearElement> springs, dashpots;
+  Structure structure;                   ///< nodes and elements; may be empty
   std::optional<FullMatrices> matrices;  ///< instead of mass, springs and dashpots
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;

@@ -13,8 +13,9 @@ namespace {
 
 constexpr Index largest_modal_size = 2000;  // all modes of a dense eigenproblem; minutes beyond
 
-SparseMatrix from_elements(Index n, const std::vector<model::LinearElement>& elements) {
-  std::vector<Eigen::Triplet<double>> entries;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+SparseMatrix from_elements(Index n, const std::vector<model::LinearElement>& elements, Triplets entries = {}) {
   for (const auto& element : elements) {
     if (element.first != ground) entries.emplace_back(element.first, element.first, element.coefficient);
     if (element.second != ground) entries.emplace_back(element.second, element.second, element.coefficient);
@@ -27,10 +28,27 @@ SparseMatrix from_elements(Index n, const std::vector<model::LinearElement>& ele
   return matrix;
 }
 
-SparseMatrix diagonal(const Vector& values) {
-  SparseMatrix matrix(values.size(), values.size());
-  matrix.reserve(Eigen::VectorXi::Constant(static_cast<int>(values.size()), 1));
-  for (Index i = 0; i < values.size(); ++i) matrix.insert(i, i) = values[i];
+/// Adds the matrices of beams and trusses, row by row; rows of what is fixed fall away.
+void add_structure(const model::Structure& structure, Triplets& mass, Triplets& stiffness) {
+  model::ElementEquations equations;
+  for (const auto& element : structure.elements) {
+    model::equations_of(structure, element, equations);
+    for (int j = 0; j < equations.size; ++j) {
+      const Index column = equations.place[static_cast<std::size_t>(j)];
+      if (column == ground) continue;
+      for (int i = 0; i < equations.size; ++i) {
+        const Index row = equations.place[static_cast<std::size_t>(i)];
+        if (row == ground) continue;
+        if (equations.stiffness(i, j) != 0.0) stiffness.emplace_back(row, column, equations.stiffness(i, j));
+        if (equations.mass(i, j) != 0.0) mass.emplace_back(row, column, equations.mass(i, j));
+      }
+    }
+  }
+}
+
+SparseMatrix from_triplets(Index n, const Triplets& entries) {
+  SparseMatrix matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
 
@@ -109,8 +127,17 @@ Loads loads_of(const model::Model& model, const SparseMatrix& mass) {
 LocallyNonlinear assemble(const model::Model& model) {
   const Index n = model.size();
   LocallyNonlinear::Parts parts;
-  parts.mass = model.matrices ? model.matrices->mass : diagonal(model.mass);
-  parts.stiffness = model.matrices ? model.matrices->stiffness : from_elements(n, model.springs);
+  if (model.matrices) {
+    parts.mass = model.matrices->mass;
+    parts.stiffness = model.matrices->stiffness;
+  } else {
+    Triplets mass, stiffness;
+    add_structure(model.structure, mass, stiffness);
+    for (Index i = 0; i < n; ++i)
+      if (model.mass[i] != 0.0 || model.structure.is_empty()) mass.emplace_back(i, i, model.mass[i]);
+    parts.mass = from_triplets(n, mass);
+    parts.stiffness = from_elements(n, model.springs, std::move(stiffness));
+  }
   require_positive_definite(parts.mass, model.coordinates);
   parts.damping = damping_matrix(model.damping, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
@@ -120,6 +147,7 @@ LocallyNonlinear assemble(const model::Model& model) {
   parts.start.q = model.position;
   parts.start.v = model.velocity;
   parts.coordinates = model.coordinates;
+  parts.is_rotation = model.is_rotation;
   return LocallyNonlinear(std::move(parts));
 }
 

@@ -25,6 +25,7 @@ class LocallyNonlinear {
     Loads loads;
     State start;                           ///< t = 0; q, v of the model; sliders without force
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
+    std::vector<char> is_rotation;         ///< [n]: in [rad] instead of [m]; may be empty: none is
   };
 
   explicit LocallyNonlinear(Parts parts);
@@ -38,6 +39,9 @@ class LocallyNonlinear {
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
+  bool is_rotation(Index i) const {
+    return !parts_.is_rotation.empty() && parts_.is_rotation[static_cast<std::size_t>(i)] != 0;
+  }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
   /// u = x_first - x_second of slider i [m]

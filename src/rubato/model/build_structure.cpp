@@ -1,0 +1,438 @@
+#include <rubato/model/build_structure.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace rubato::model {
+namespace {
+
+using numerics::Parameters;
+
+// Below this share of its length a vector counts as parallel to another: the frame of the beam would be made of
+// round-off.
+constexpr double parallel = 1e-8;
+
+struct Material {
+  double young, shear_modulus, density;  // shear_modulus 0: not given
+};
+
+struct Section {
+  double area, inertia_y, inertia_z, torsion, shear_factor_y, shear_factor_z;  // 0: not given
+};
+
+/// Values by name, with messages about names that are missing or doubled.
+template <class Value>
+class ByName {
+ public:
+  explicit ByName(std::string kind) : kind_(std::move(kind)) {}
+
+  void add(const std::string& name, const Location& where, Value value) {
+    if (name.empty()) throw InvalidInput(where, fmt::format("a {} needs a name", kind_));
+    if (!places_.emplace(name, values_.size()).second)
+      throw InvalidInput(where, fmt::format("two {}s are called \"{}\"", kind_, name));
+    names_.push_back(name);
+    values_.push_back(std::move(value));
+  }
+  std::size_t place(const std::string& name, const Location& where, const std::string& role) const {
+    const auto found = places_.find(name);
+    if (found != places_.end()) return found->second;
+    throw InvalidInput(where, fmt::format("{} \"{}\", which is no {}{}", role, name, kind_, suggestion(name, names_)));
+  }
+  bool has(const std::string& name) const { return places_.count(name) > 0; }
+  const Value& at(std::size_t place) const { return values_[place]; }
+
+ private:
+  std::string kind_;
+  std::vector<std::string> names_;
+  std::vector<Value> values_;
+  std::unordered_map<std::string, std::size_t> places_;
+};
+
+class StructureBuilder {
+ public:
+  StructureBuilder(const StructureDescription& description, const Parameters& parameters)
+      : description_(description), parameters_(parameters) {}
+
+  BuiltStructure build(Index offset) {
+    take_nodes();
+    take_materials();
+    take_sections();
+    for (const BeamDescription& beam : description_.beams) take_beam(beam);
+    for (const TrussDescription& truss : description_.trusses) take_truss(truss);
+    for (const PointMassDescription& mass : description_.masses) take_mass(mass);
+    for (const SupportDescription& support : description_.supports) take_support(support);
+    number_coordinates(offset);
+    return std::move(built_);
+  }
+
+ private:
+  struct NodeState {
+    std::array<bool, 6> exists{}, is_fixed{};
+    std::array<double, 6> mass{};
+    Location where;
+  };
+
+  double number(const Quantity& quantity, const std::string& what) const {
+    return evaluate(quantity, parameters_, what);
+  }
+  double positive(const Quantity& quantity, const std::string& what) const {
+    const double value = number(quantity, what);
+    if (!(value > 0.0)) throw InvalidInput(quantity.where, fmt::format("{} must be positive, got {}", what, value));
+    return value;
+  }
+  bool in_plane() const { return built_.structure.dimension == 2; }
+
+  void add_node(const std::string& name, const Location& where, const Axis& position) {
+    refuse_unfit_name(name, where);
+    nodes_.add(name, where, static_cast<Index>(states_.size()));
+    built_.structure.names.push_back(name);
+    built_.structure.positions.push_back(position);
+    states_.emplace_back();
+    states_.back().where = where;
+  }
+
+  void take_nodes() {
+    built_.structure.dimension = description_.nodes.front().position.size() == 3 ? 3 : 2;
+    for (const NodeDescription& node : description_.nodes) {
+      const std::size_t given = node.position.size();
+      if (given != 2 && given != 3)
+        throw InvalidInput(node.where, fmt::format("node \"{}\": position takes two numbers in the plane or three in "
+                                                   "space, got {}",
+                                                   node.name, given));
+      if (static_cast<int>(given) != built_.structure.dimension)
+        throw InvalidInput(node.where,
+                           fmt::format("node \"{}\" has {} numbers for its position, and node \"{}\" has {}: a model "
+                                       "lies in the plane or in space",
+                                       node.name, given, description_.nodes.front().name, built_.structure.dimension));
+      Axis position = Axis::Zero();
+      for (std::size_t i = 0; i < given; ++i)
+        position[static_cast<Index>(i)] = number(node.position[i], fmt::format("node \"{}\": position", node.name));
+      add_node(node.name, node.where, position);
+    }
+  }
+
+  void take_materials() {
+    for (const MaterialDescription& material : description_.materials) {
+      const std::string part = fmt::format("material \"{}\": ", material.name);
+      Material values{positive(material.young, part + "young"), 0.0, positive(material.density, part + "density")};
+      if (material.poisson && material.shear_modulus)
+        throw InvalidInput(material.shear_modulus->where,
+                           part + "\"poisson\" and \"shear_modulus\" say the same; keep one");
+      if (material.shear_modulus) values.shear_modulus = positive(*material.shear_modulus, part + "shear_modulus");
+      if (material.poisson) {
+        const double nu = number(*material.poisson, part + "poisson");
+        if (!(nu > -1.0 && nu <= 0.5))
+          throw InvalidInput(material.poisson->where, fmt::format("{}poisson must lie in (-1, 0.5], got {}", part, nu));
+        values.shear_modulus = values.young / (2.0 * (1.0 + nu));
+      }
+      materials_.add(material.name, material.where, values);
+    }
+  }
+
+  void take_sections() {
+    for (const SectionDescription& section : description_.sections) {
+      const std::string part = fmt::format("section \"{}\": ", section.name);
+      Section values{};
+      values.area = positive(section.area, part + "area");
+      const std::size_t wanted = in_plane() ? 1 : 2;
+      if (!section.inertia.empty() && section.inertia.size() != wanted)
+        throw InvalidInput(section.where,
+                           fmt::format("{}inertia takes {}, got {}", part,
+                                       in_plane() ? "one number in the plane" : "two numbers in space, [Iy, Iz]",
+                                       section.inertia.size()));
+      if (!section.inertia.empty()) {
+        values.inertia_z = positive(section.inertia.back(), part + "inertia");
+        values.inertia_y = positive(section.inertia.front(), part + "inertia");
+      }
+      if (section.torsion) {
+        if (in_plane())
+          throw InvalidInput(section.torsion->where, part + "torsion is for models in space; remove the key");
+        values.torsion = positive(*section.torsion, part + "torsion");
+      }
+      if (section.shear_factor.size() > wanted)
+        throw InvalidInput(section.where, fmt::format("{}shear_factor takes {}, got {}", part,
+                                                      in_plane() ? "one number in the plane"
+                                                                 : "one number, or two in space, [along y, along z]",
+                                                      section.shear_factor.size()));
+      if (!section.shear_factor.empty()) {
+        values.shear_factor_y = shear_factor(section.shear_factor.front(), part);
+        values.shear_factor_z = shear_factor(section.shear_factor.back(), part);
+      }
+      sections_.add(section.name, section.where, values);
+    }
+  }
+
+  double shear_factor(const Quantity& quantity, const std::string& part) const {
+    const double value = positive(quantity, part + "shear_factor");
+    if (!(value <= 1.0))
+      throw InvalidInput(quantity.where, fmt::format("{}shear_factor is the shear area over the area and cannot exceed "
+                                                     "1, got {}",
+                                                     part, value));
+    return value;
+  }
+
+  static std::string part_of(const LineDescription& line, const char* kind) {
+    return line.name.empty() ? fmt::format("the {} from \"{}\" to \"{}\"", kind, line.nodes[0], line.nodes[1])
+                             : fmt::format("{} \"{}\"", kind, line.name);
+  }
+
+  /// The ends of a line, which must be two nodes apart.
+  std::array<Index, 2> ends_of(const LineDescription& line, const std::string& part) const {
+    std::array<Index, 2> ends{};
+    for (std::size_t i = 0; i < 2; ++i)
+      ends[i] = static_cast<Index>(nodes_.place(line.nodes[i], line.nodes_where[i], part + " joins"));
+    if (ends[0] == ends[1])
+      throw InvalidInput(line.nodes_where[1], fmt::format("{} joins node \"{}\" with itself", part, line.nodes[1]));
+    const Axis &a = built_.structure.positions[static_cast<std::size_t>(ends[0])],
+               &b = built_.structure.positions[static_cast<std::size_t>(ends[1])];
+    // Shorter than round-off of the positions: the direction would be made of it.
+    if (!((b - a).norm() > 1e-12 * std::max(a.norm(), b.norm())))
+      throw InvalidInput(line.where, fmt::format("{} has no length: nodes \"{}\" and \"{}\" lie in the same place",
+                                                 part, line.nodes[0], line.nodes[1]));
+    return ends;
+  }
+
+  int add_properties(const LineProperties& properties) {
+    auto& all = built_.structure.properties;
+    // Neighbours in the file mostly share theirs.
+    const auto found = std::find(all.rbegin(), all.rend(), properties);
+    if (found != all.rend()) return static_cast<int>(all.rend() - found) - 1;
+    all.push_back(properties);
+    return static_cast<int>(all.size()) - 1;
+  }
+
+  LineProperties properties_of(const LineDescription& line, const std::string& part, Section& section) {
+    const std::size_t at_section = sections_.place(line.section, line.section_where, part + " has the section");
+    const std::size_t at_material = materials_.place(line.material, line.material_where, part + " has the material");
+    section = sections_.at(at_section);
+    const Material& material = materials_.at(at_material);
+    LineProperties p;
+    p.lumped_mass = line.lumped_mass;
+    p.young = material.young;
+    p.density = material.density;
+    p.shear_modulus = material.shear_modulus;
+    p.area = section.area;
+    return p;
+  }
+
+  void take_beam(const BeamDescription& beam) {
+    const std::string part = part_of(beam, "beam");
+    const std::array<Index, 2> ends = ends_of(beam, part);
+    Section section{};
+    LineProperties p = properties_of(beam, part, section);
+    if (section.inertia_z == 0.0)
+      throw InvalidInput(beam.section_where,
+                         fmt::format("{} has the section \"{}\", which has no inertia; give the section one [m4], or "
+                                     "take a [[truss]]",
+                                     part, beam.section));
+    p.inertia_z = section.inertia_z;
+    if (!in_plane()) {
+      p.inertia_y = section.inertia_y;
+      p.torsion = section.torsion;
+      if (p.torsion == 0.0)
+        throw InvalidInput(beam.section_where,
+                           fmt::format("{} has the section \"{}\", which has no torsion constant; give the section "
+                                       "\"torsion\" [m4]",
+                                       part, beam.section));
+    }
+    const bool has_shear = beam.formulation == BeamDescription::Formulation::timoshenko;
+    if (has_shear && section.shear_factor_y == 0.0)
+      throw InvalidInput(beam.section_where,
+                         fmt::format("{} is a Timoshenko beam, and its section \"{}\" has no shear_factor (5/6 for a "
+                                     "rectangle); give it one, or take formulation = \"euler_bernoulli\"",
+                                     part, beam.section));
+    if (p.shear_modulus == 0.0 && (has_shear || !in_plane()))
+      throw InvalidInput(beam.material_where,
+                         fmt::format("{} needs the shear modulus of the material \"{}\"; give the material \"poisson\" "
+                                     "or \"shear_modulus\"",
+                                     part, beam.material));
+    if (has_shear) {
+      p.shear_area_y = section.shear_factor_y * section.area;
+      p.shear_area_z = in_plane() ? 0.0 : section.shear_factor_z * section.area;
+    }
+    const LineElement element{ends[0], ends[1], add_properties(p), orientation_of(beam, part, ends, p)};
+    divide(beam, part, element);
+  }
+
+  Axis orientation_of(const BeamDescription& beam, const std::string& part, const std::array<Index, 2>& ends,
+                      const LineProperties& p) const {
+    if (in_plane()) {
+      if (!beam.orientation.empty())
+        throw InvalidInput(beam.orientation_where, part + ": orientation is for models in space; remove the key");
+      return Axis::Zero();
+    }
+    const Axis along = (built_.structure.positions[static_cast<std::size_t>(ends[1])] -
+                        built_.structure.positions[static_cast<std::size_t>(ends[0])])
+                           .normalized();
+    if (beam.orientation.empty()) {
+      if (along.cross(Axis::UnitZ()).norm() > parallel) return Axis::UnitZ();
+      if (p.inertia_y == p.inertia_z && p.shear_area_y == p.shear_area_z) return Axis::UnitX();
+      throw InvalidInput(beam.where,
+                         fmt::format("{} is vertical, and its section is not the same about both axes; give "
+                                     "\"orientation\", a vector in its local x-y plane",
+                                     part));
+    }
+    if (beam.orientation.size() != 3)
+      throw InvalidInput(beam.orientation_where,
+                         fmt::format("{}: orientation takes three numbers, got {}", part, beam.orientation.size()));
+    Axis orientation;
+    for (Index i = 0; i < 3; ++i)
+      orientation[i] = number(beam.orientation[static_cast<std::size_t>(i)], part + ": orientation");
+    if (!(along.cross(orientation).norm() > parallel * orientation.norm()))
+      throw InvalidInput(beam.orientation_where,
+                         fmt::format("{}: the orientation [{}] lies along the beam; give a vector across it, in its "
+                                     "local x-y plane",
+                                     part, fmt::join(orientation.data(), orientation.data() + 3, ", ")));
+    return orientation;
+  }
+
+  /// Adds the elements of a beam and the nodes between them, which are called BEAM:1, BEAM:2, ...
+  void divide(const BeamDescription& beam, const std::string& part, LineElement element) {
+    if (beam.elements < 1)
+      throw InvalidInput(beam.where, fmt::format("{}: elements must be at least 1, got {}", part, beam.elements));
+    const Index last = element.second;
+    const Axis from = built_.structure.positions[static_cast<std::size_t>(element.first)];
+    const Axis to = built_.structure.positions[static_cast<std::size_t>(last)];
+    const std::string name = beam.name.empty() ? beam.nodes[0] + "-" + beam.nodes[1] : beam.name;
+    for (int i = 1; i < beam.elements; ++i) {
+      const double share = static_cast<double>(i) / beam.elements;
+      const std::string between = fmt::format("{}:{}", name, i);
+      if (nodes_.has(between))
+        throw InvalidInput(beam.where, fmt::format("{} makes a node \"{}\" within it, which there is already; give the "
+                                                   "beam another name",
+                                                   part, between));
+      add_node(between, beam.where, (1.0 - share) * from + share * to);
+      element.second = static_cast<Index>(states_.size()) - 1;
+      add_element(element, true);
+      element.first = element.second;
+    }
+    element.second = last;
+    add_element(element, true);
+  }
+
+  void add_element(const LineElement& element, bool is_beam) {
+    built_.structure.elements.push_back(element);
+    for (const Index node : {element.first, element.second}) {
+      auto& exists = states_[static_cast<std::size_t>(node)].exists;
+      exists[0] = exists[1] = true;
+      exists[2] = exists[2] || !in_plane();
+      if (!is_beam) continue;
+      exists[5] = true;
+      exists[3] = exists[4] = !in_plane();
+    }
+  }
+
+  void take_truss(const TrussDescription& truss) {
+    const std::string part = part_of(truss, "truss");
+    const std::array<Index, 2> ends = ends_of(truss, part);
+    Section unused{};
+    LineProperties p = properties_of(truss, part, unused);
+    p.kind = LineProperties::Kind::truss;
+    p.shear_modulus = 0.0;
+    add_element({ends[0], ends[1], add_properties(p), Axis::Zero()}, false);
+  }
+
+  void take_mass(const PointMassDescription& mass) {
+    const std::string part = fmt::format("the mass on node \"{}\"", mass.node);
+    const std::size_t node = nodes_.place(mass.node, mass.node_where, "a mass is on");
+    NodeState& state = states_[node];
+    if (!mass.mass && mass.inertia.empty())
+      throw InvalidInput(mass.where, part + " needs \"mass\" [kg], \"inertia\" [kg m2] or both");
+    if (mass.mass) {
+      const double value = positive(*mass.mass, part + ": mass");
+      for (std::size_t axis = 0; axis < static_cast<std::size_t>(built_.structure.dimension); ++axis) {
+        state.mass[axis] += value;
+        state.exists[axis] = true;
+      }
+    }
+    if (mass.inertia.empty()) return;
+    const std::size_t wanted = in_plane() ? 1 : 3;
+    if (mass.inertia.size() != wanted)
+      throw InvalidInput(mass.where, fmt::format("{}: inertia takes {}, got {}", part,
+                                                 in_plane() ? "one number in the plane, about z"
+                                                            : "three numbers in space, about x, y and z",
+                                                 mass.inertia.size()));
+    for (std::size_t i = 0; i < wanted; ++i) {
+      const std::size_t axis = in_plane() ? 5 : 3 + i;
+      state.mass[axis] += positive(mass.inertia[i], part + ": inertia");
+      state.exists[axis] = true;
+    }
+  }
+
+  void take_support(const SupportDescription& support) {
+    const std::size_t node = nodes_.place(support.node, support.node_where, "a support is at");
+    if (support.fix.empty())
+      throw InvalidInput(support.where, fmt::format("the support at node \"{}\" fixes nothing", support.node));
+    for (std::size_t i = 0; i < support.fix.size(); ++i) {
+      const auto axis = static_cast<std::size_t>(std::find(axis_names.begin(), axis_names.end(), support.fix[i]) -
+                                                 axis_names.begin());
+      const Location& where = i < support.fix_where.size() ? support.fix_where[i] : support.where;
+      if (axis == axis_names.size() || (in_plane() && axis >= 2 && axis != 5))
+        throw InvalidInput(
+            where, fmt::format("the support at node \"{}\" fixes \"{}\"; a node {}", support.node, support.fix[i],
+                               in_plane() ? "in the plane has x, y, rz" : "in space has x, y, z, rx, ry, rz"));
+      if (states_[node].is_fixed[axis])
+        throw InvalidInput(where, fmt::format("node \"{}\" is fixed in {} twice", support.node, support.fix[i]));
+      states_[node].is_fixed[axis] = true;
+    }
+  }
+
+  void number_coordinates(Index offset) {
+    for (std::size_t node = 0; node < states_.size(); ++node) {
+      const NodeState& state = states_[node];
+      if (std::none_of(state.exists.begin(), state.exists.end(), [](bool e) { return e; }))
+        throw InvalidInput(state.where, fmt::format("node \"{}\" is joined by nothing: no beam, truss or mass names it",
+                                                    built_.structure.names[node]));
+      std::array<Index, 6> places{};
+      places.fill(ground);
+      for (std::size_t axis = 0; axis < 6; ++axis) {
+        if (!state.exists[axis] && !state.is_fixed[axis]) continue;
+        std::string name = built_.structure.names[node] + "." + axis_names[axis];
+        if (state.is_fixed[axis]) {
+          built_.fixed.insert(std::move(name));
+          continue;
+        }
+        places[axis] = offset + static_cast<Index>(built_.coordinates.size());
+        built_.coordinates.push_back({std::move(name), is_rotation(axis), state.mass[axis]});
+      }
+      built_.structure.places.push_back(places);
+    }
+  }
+
+  const StructureDescription& description_;
+  const Parameters& parameters_;
+  BuiltStructure built_;
+  ByName<Index> nodes_{"node"};
+  ByName<Material> materials_{"material"};
+  ByName<Section> sections_{"section"};
+  std::vector<NodeState> states_;
+};
+
+}  // namespace
+
+void refuse_unfit_name(const std::string& name, const Location& where) {
+  const auto is_unfit = [](unsigned char c) {
+    return c < 0x20 || c == 0x7f || c == ',' || c == ';' || c == '"' || c == '/';
+  };
+  if (name.empty() || (name.front() != ' ' && name.back() != ' ' && name.find(" - ") == std::string::npos &&
+                       std::none_of(name.begin(), name.end(), is_unfit)))
+    return;
+  std::string shown = name;
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  std::replace_if(shown.begin(), shown.end(), is_control, '?');
+  throw InvalidInput(where,
+                     fmt::format("the name \"{}\" cannot head a column of results: no comma, semicolon, quote, slash, "
+                                 "control character, \" - \", or space at its ends",
+                                 shown));
+}
+
+BuiltStructure build_structure(const StructureDescription& description, const Parameters& parameters, Index offset) {
+  return StructureBuilder(description, parameters).build(offset);
+}
+
+}  // namespace rubato::model

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/model/description.hpp>
+#include <rubato/model/structure.hpp>
+
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+// Private to the model floor: the part of build() that knows nodes.
+namespace rubato::model {
+
+/// A degree of freedom that is free to move.
+struct NodeCoordinate {
+  std::string name;  ///< "7.rz"
+  bool is_rotation = false;
+  double mass = 0.0;  ///< point masses [kg], or inertias [kg m2]
+};
+
+struct BuiltStructure {
+  Structure structure;
+  std::vector<NodeCoordinate> coordinates;  ///< in the order of the nodes; the first is coordinate `offset`
+  std::unordered_set<std::string> fixed;    ///< names of those held by supports
+};
+
+/// Evaluates and checks nodes, elements, masses and supports. A degree of freedom exists where something gives it an
+/// inertia: beams all of a node's, trusses and masses the translations, inertias the rotations. Throws InvalidInput.
+/// @param offset  coordinates before those of the nodes
+BuiltStructure build_structure(const StructureDescription& description, const numerics::Parameters& parameters,
+                               Index offset);
+
+/// Throws InvalidInput for a name that cannot head a column of results.
+void refuse_unfit_name(const std::string& name, const Location& where);
+
+}  // namespace rubato::model

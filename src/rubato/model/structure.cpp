@@ -1,0 +1,33 @@
+#include <rubato/model/structure.hpp>
+
+#include <Eigen/Geometry>
+
+namespace rubato::model {
+
+void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations) {
+  const LineProperties& properties = structure.properties[static_cast<std::size_t>(element.properties)];
+  const bool is_beam = properties.kind == LineProperties::Kind::beam;
+  static constexpr std::size_t plane_beam[] = {0, 1, 5}, others[] = {0, 1, 2, 3, 4, 5};
+  const bool in_plane = structure.dimension == 2;
+  const std::size_t* const axes_of_node = is_beam && in_plane ? plane_beam : others;
+  const int width = is_beam ? 3 * (structure.dimension - 1) : structure.dimension;
+  equations.size = 2 * width;
+  for (int i = 0; i < 2 * width; ++i) {
+    const auto node = static_cast<std::size_t>(i < width ? element.first : element.second);
+    const std::size_t axis = axes_of_node[i % width];
+    equations.axis[static_cast<std::size_t>(i)] = axis;
+    equations.place[static_cast<std::size_t>(i)] = structure.places[node][axis];
+  }
+  const Axis along = structure.positions[static_cast<std::size_t>(element.second)] -
+                     structure.positions[static_cast<std::size_t>(element.first)];
+  local_matrices(properties, structure.dimension, along.norm(), equations.stiffness, equations.mass);
+  // A truss is the same about its axis, and so is its mass: any orientation across it will do.
+  const Axis across = in_plane  ? Axis(-along.y(), along.x(), 0.0)
+                      : is_beam ? element.orientation
+                                : along.unitOrthogonal();
+  const Eigen::Matrix3d axes = local_axes(along, across);
+  turn_into_model_axes(axes, structure.dimension, is_beam, equations.stiffness);
+  turn_into_model_axes(axes, structure.dimension, is_beam, equations.mass);
+}
+
+}  // namespace rubato::model

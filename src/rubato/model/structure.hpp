@@ -1,0 +1,46 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/beams/line_element.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace rubato::model {
+
+/// The degrees of freedom of a node, in this order; a plane node has x, y and rz.
+inline constexpr std::array<const char*, 6> axis_names{"x", "y", "z", "rx", "ry", "rz"};
+inline constexpr bool is_rotation(std::size_t axis) { return axis >= 3; }
+
+/// A straight line between two nodes.
+struct LineElement {
+  Index first = 0, second = 0;  ///< nodes
+  int properties = 0;
+  Axis orientation = Axis::Zero();  ///< of a beam in space, in its local x-y plane
+};
+
+/// Nodes in the plane or in space and the elements between them, with the coordinate that each degree of freedom is.
+struct Structure {
+  int dimension = 2;                         ///< 2: plane, 3: space
+  std::vector<std::string> names;            ///< of the nodes, [p]
+  std::vector<Axis> positions;               ///< [p] [m]; in the plane z = 0
+  std::vector<std::array<Index, 6>> places;  ///< coordinate of x, y, z, rx, ry, rz; `ground` where fixed or absent
+  std::vector<LineProperties> properties;
+  std::vector<LineElement> elements;
+
+  bool is_empty() const { return names.empty(); }
+};
+
+/// What an element adds to the equations: matrices over its degrees of freedom, in the axes of the model.
+struct ElementEquations {
+  int size = 0;                        ///< k
+  std::array<Index, 12> place{};       ///< coordinate of each, or `ground` [k]
+  std::array<std::size_t, 12> axis{};  ///< which of x, y, z, rx, ry, rz each is [k]
+  LineMatrix stiffness, mass;          ///< [k x k]
+};
+
+/// The equations of an element of a structure. `equations` is overwritten; allocates nothing.
+void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations);
+
+}  // namespace rubato::model
