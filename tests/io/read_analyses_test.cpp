@@ -25,11 +25,11 @@ TEST(AnalysisError, NamesTheTypesThatThereAre) {
   EXPECT_EQ(verdict_with("\"transient\"", "\"transiant\""),
             "study.toml:39:8: error: analysis \"response\": type cannot be \"transiant\"; did you mean \"transient\"? "
             "(known: "
-            "transient, method_study)");
-  for (const std::string type : {"frequency_response", "damper_curve", "modes", "static"})
+            "transient, method_study, frequency_response)");
+  for (const std::string type : {"damper_curve", "modes", "static"})
     EXPECT_EQ(verdict_with("\"transient\"", "\"" + type + "\""),
               "study.toml:39:8: error: analysis \"response\": the type \"" + type +
-                  "\" is not available in this version; available: transient, method_study");
+                  "\" is not available in this version; available: transient, method_study, frequency_response");
 }
 
 TEST(AnalysisError, SaysThatStepsAreNotAutomaticYet) {

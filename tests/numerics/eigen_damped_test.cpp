@@ -23,10 +23,10 @@ DampedModes modes_of(const Matrix& mass, const Matrix& damping, const Matrix& st
 // The factors of det(s^2 M + s C + K), evaluated by elimination: zero at every eigenvalue, relative to the product of
 // the sizes of its rows.
 double characteristic(Complex s, const Matrix& mass, const Matrix& damping, const Matrix& stiffness) {
-  const Eigen::MatrixXcd matrix = s * s * mass.cast<Complex>() + s * damping.cast<Complex>() + stiffness.cast<Complex>();
-  const Vector rows = (std::norm(s) * mass.cwiseAbs() + std::abs(s) * damping.cwiseAbs() + stiffness.cwiseAbs())
-                          .rowwise()
-                          .sum();
+  const Eigen::MatrixXcd matrix =
+      s * s * mass.cast<Complex>() + s * damping.cast<Complex>() + stiffness.cast<Complex>();
+  const Vector rows =
+      (std::norm(s) * mass.cwiseAbs() + std::abs(s) * damping.cwiseAbs() + stiffness.cwiseAbs()).rowwise().sum();
   return std::abs(matrix.determinant()) / rows.prod();
 }
 

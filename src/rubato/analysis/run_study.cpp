@@ -1,3 +1,5 @@
+#include <rubato/analysis/frequency_response.hpp>
+#include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/transient.hpp>
@@ -35,10 +37,29 @@ AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinea
   return result;
 }
 
+AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::LocallyNonlinear& system) {
+  const auto observed = static_cast<double>(plan.observed.size());
+  const auto sliders = static_cast<double>(system.slider_count());
+  const double columns = static_cast<double>(plan.sweep.names().size()) + 10.0 + 3.0 * sliders +
+                         observed * (5.0 + 2.0 * static_cast<double>(plan.request.harmonics.size()));
+  double kept = 0.0;
+  for (const bool is_kept : plan.waveform_at) kept += is_kept ? 1.0 : 0.0;
+  const double waveforms = static_cast<double>(plan.sweep.lines()) * kept * plan.waveform_points;
+  AnalysisOutline result;
+  result.points = plan.points();
+  result.expected_bytes = 36.0 *  // 8 of them in the journal
+                          (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
+  if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
+  result.summary = fmt::format("frequency response, {}, {} lines of {} points", route_name(plan.route.kind),
+                               plan.sweep.lines(), plan.steps.size());
+  return result;
+}
+
 }  // namespace
 
-AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
-                               const numerics::Parameters& parameters) {
+AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  const system::LocallyNonlinear& system = input.system;
+  const numerics::Parameters& parameters = input.parameters;
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
     const TransientPlan plan = plan_transient(analysis.name, analysis.where, *transient, system, parameters);
     if (std::holds_alternative<integrate::Exact>(plan.method.formula)) check_exact_transient(analysis.where, system);
@@ -51,21 +72,38 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
     }
     return outline(plan, system);
   }
+  if (const auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, *response, input);
+    try {
+      (void)steady_solvers(plan.route).response(system, plan.request);
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(analysis.where, fault.message());
+    }
+    return outline(plan, system);
+  }
   const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
   check_method_study(analysis.name, analysis.where, study, system, parameters);
   return {"method study: errors, orders and curves of each method", 1e7};
 }
 
-RunReport run_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
-                       const numerics::Parameters& parameters, RunContext& context) {
+RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
+  const system::LocallyNonlinear& system = input.system;
+  const numerics::Parameters& parameters = input.parameters;
   RunReport report;
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
+  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
     report = run_transient(analysis.name, plan_transient(analysis.name, analysis.where, *transient, system, parameters),
                            system, context);
-  else
+  } else if (const auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, *response, input);
+    report = run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
+  } else {
     report = run_method_study(analysis.name, std::get<model::MethodStudyDescription>(analysis.task), system, parameters,
                               context);
-  context.sink.conclude(analysis.name, status_name(report.status), report.message, report.statistics);
+  }
+  auto notes = report.statistics;
+  for (std::size_t i = 0; i < report.warnings.size(); ++i)
+    notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);
+  context.sink.conclude(analysis.name, status_name(report.status), report.message, notes);
   return report;
 }
 

@@ -9,6 +9,14 @@ namespace {
 
 using namespace model;
 
+ObservationDescription to_observation(const std::string& text, const Location& where) {
+  const std::size_t minus = text.find(" - ");
+  if (minus == std::string::npos) return {text, "", where};
+  return {text.substr(0, minus), text.substr(minus + 3), where};
+}
+
+}  // namespace
+
 MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key) {
   MethodDescription method;
   method.where = reader.location(node);
@@ -27,12 +35,6 @@ MethodDescription to_method(TomlReader& reader, const toml::node& node, const st
   return method;
 }
 
-ObservationDescription to_observation(const std::string& text, const Location& where) {
-  const std::size_t minus = text.find(" - ");
-  if (minus == std::string::npos) return {text, "", where};
-  return {text.substr(0, minus), text.substr(minus + 3), where};
-}
-
 std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& reader) {
   std::vector<Location> places;
   const auto texts = reader.optional_texts("observe", &places);
@@ -47,6 +49,8 @@ std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& read
   }
   return observations;
 }
+
+namespace {
 
 OutputDescription read_output(TomlReader& reader) {
   OutputDescription output;
@@ -113,9 +117,9 @@ MethodStudyDescription read_method_study(TomlReader& reader) {
 
 }  // namespace
 
-std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
-  const std::vector<std::string> known{"transient", "method_study"};
-  const std::vector<std::string> planned{"frequency_response", "damper_curve", "modes", "static"};
+std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
+  const std::vector<std::string> known{"transient", "method_study", "frequency_response"};
+  const std::vector<std::string> planned{"damper_curve", "modes", "static"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -138,11 +142,13 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
     if (std::find(planned.begin(), planned.end(), type) != planned.end())
       throw InvalidInput(reader.where("type"),
                          fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study",
+                                     "available: transient, method_study, frequency_response",
                                      analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
+    else if (type == "frequency_response")
+      analysis.task = read_frequency_response(reader, folder);
     else
       analysis.task = read_method_study(reader);
     reader.finish();

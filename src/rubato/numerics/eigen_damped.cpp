@@ -16,13 +16,13 @@ using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 
 constexpr double unit = std::numeric_limits<double>::epsilon();
-constexpr Index largest_full = 400;       // coupled modes solved together: seconds
-constexpr double equal = 1e-9;            // relative distance of eigenvalues that count as equal
-constexpr double visible = 1e-9;          // change of a shape by coupling that is worth a complex mode
-constexpr double noise = 1e-13;           // of phi_i^T C phi_j, relative to the sizes of its terms
+constexpr Index largest_full = 400;  // coupled modes solved together: seconds
+constexpr double equal = 1e-9;       // relative distance of eigenvalues that count as equal
+constexpr double visible = 1e-9;     // change of a shape by coupling that is worth a complex mode
+constexpr double noise = 1e-13;      // of phi_i^T C phi_j, relative to the sizes of its terms
 constexpr int most_iterations = 12;
-constexpr double settled = 1e-13;         // relative change of s
-constexpr double same = 1e-8;             // relative distance of eigenvalues that may be one
+constexpr double settled = 1e-13;  // relative change of s
+constexpr double same = 1e-8;      // relative distance of eigenvalues that may be one
 
 struct Structure {
   const SparseMatrix &stiffness, &damping, &mass;
@@ -160,8 +160,8 @@ class Refinement {
     bool stands = false;
     for (int i = 0; i < most_iterations && !stands; ++i) {
       const SparseComplexMatrix matrix = k.cast<Complex>() + s * c.cast<Complex>() + s * s * m.cast<Complex>();
-      const Vector scale = k.diagonal().cwiseAbs() + std::abs(s) * c.diagonal().cwiseAbs() +
-                           std::norm(s) * m.diagonal().cwiseAbs();
+      const Vector scale =
+          k.diagonal().cwiseAbs() + std::abs(s) * c.diagonal().cwiseAbs() + std::norm(s) * m.diagonal().cwiseAbs();
       factor_.factorise(matrix, scale);
       ComplexVector y = 2.0 * s * (m * x) + c * x;
       factor_.solve(y);
@@ -191,9 +191,8 @@ bool leads_out(const Structure& structure, const SymmetricModes& undamped, const
 }
 
 void sort_and_cut(std::vector<DampedMode>& modes, Index count) {
-  std::stable_sort(modes.begin(), modes.end(), [](const DampedMode& a, const DampedMode& b) {
-    return a.angular_frequency < b.angular_frequency;
-  });
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const DampedMode& a, const DampedMode& b) { return a.angular_frequency < b.angular_frequency; });
   if (static_cast<Index>(modes.size()) > count) modes.resize(static_cast<std::size_t>(count));
 }
 

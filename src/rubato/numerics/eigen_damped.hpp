@@ -34,8 +34,8 @@ struct DampedModes {
 /// eigenproblem of first order in (omega q, v). Real eigenvalues of coupled modes have no partner and are modes of
 /// their own, with ratio 1.
 ///
-/// Up to 400 coupled coordinates all modes take part, and the result is complete. Beyond, the undamped modes up to twice
-/// as many as wanted span the motion; where C couples to others, each mode is then iterated on the full matrices
+/// Up to 400 coupled coordinates all modes take part, and the result is complete. Beyond, the undamped modes up to
+/// twice as many as wanted span the motion; where C couples to others, each mode is then iterated on the full matrices
 /// (inverse iteration with the quotient x^T (s^2 M + s C + K) x = 0; Parlett and Chen 1990) until s stands. That two
 /// of them are not the same is checked; that none between them is missing is not.
 DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatrix& damping, const SparseMatrix& mass,

@@ -1,8 +1,8 @@
 #include <rubato/numerics/eigen_symmetric.hpp>
 
+#include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
-#include <Spectra/SymGEigsShiftSolver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,11 @@ constexpr double unit = std::numeric_limits<double>::epsilon();
 constexpr Index dense_size = 400;  // below, the dense solver takes less than half a second
 constexpr double lanczos_tolerance = 1e-12;
 constexpr Index most_restarts = 300;
-constexpr int most_rounds = 20;         // of searching for what is missing
-constexpr double least_pivot = 1e-11;   // relative: K with a smaller one is as good as singular
-constexpr double safe_pivot = 1e-10;    // relative: the sign of a smaller one is not to be trusted
-constexpr double most_growth = 1e6;     // of pivots over the matrix: beyond, elimination without pivoting lost digits
-constexpr double distinct = 1e-7;       // relative gap that a count can stand in
+constexpr int most_rounds = 20;        // of searching for what is missing
+constexpr double least_pivot = 1e-11;  // relative: K with a smaller one is as good as singular
+constexpr double safe_pivot = 1e-10;   // relative: the sign of a smaller one is not to be trusted
+constexpr double most_growth = 1e6;    // of pivots over the matrix: beyond, elimination without pivoting lost digits
+constexpr double distinct = 1e-7;      // relative gap that a count can stand in
 
 using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
 
@@ -96,8 +96,8 @@ Search search(const Problem& problem, const Ldlt& factor, double shift, const Ma
   ShiftInvert inverse(problem, factor, found);
   MassProduct mass(problem.mass);
   const Index subspace = std::min(n - found.cols(), std::max<Index>(2 * wanted + 10, 30));
-  Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
-      inverse, mass, wanted, subspace, shift);
+  Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, wanted,
+                                                                                                 subspace, shift);
   Vector start = start_vector(n, round);
   inverse.project(start);
   solver.init(start.data());
@@ -175,8 +175,7 @@ void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, SymmetricMo
     const Vector terms = size * magnitude + std::abs(energy) * (weight * magnitude);
     const double scale = terms.maxCoeff();
     if (scale > 0.0)
-      modes.residual =
-          std::max(modes.residual, (stiff - modes.eigenvalues[j] * heavy).cwiseAbs().maxCoeff() / scale);
+      modes.residual = std::max(modes.residual, (stiff - modes.eigenvalues[j] * heavy).cwiseAbs().maxCoeff() / scale);
     modes.shapes.col(j) = shape;
   }
   // Quotients of nearly equal modes may come out of order.
