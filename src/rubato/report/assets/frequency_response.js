@@ -23,7 +23,7 @@ function statuses_of(table) {
   const total = counts.reduce((sum, count) => sum + count, 0);
   if (failed) {
     body.push(element("div", {class: "alarm", role: "alert"}, element("b", {}, `Not all of the ${count_text(total)} points converged: `),
-                      `${failed}. They are marked in the figures; their numbers are the best that was found.`));
+                      `${failed}. Where they have numbers these are the best that was found; crosses mark them in the figures.`));
   }
   const worst = (name) => {
     const found = variable_of(table, name);
