@@ -213,7 +213,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.legend(number), [
             "Linear, free", "Linear, stuck", "N0 = 0", "N0 = 0.3", "N0 = 0.8", "N0 = 1.2", "N0 = 4",
             "Not converged (3)", "Quasi periodic (1)"])
-        self.assertEqual(self.titles(number), ["Angular frequency [rad/s]", "mass: Amplitude [m]"])
+        self.assertEqual(self.titles(number), ["Angular frequency, Omega [rad/s]", "mass: Amplitude [m]"])
         crosses = f"return document.querySelectorAll('#figure-{number} .scatterlayer path.point').length"
         self.assertEqual(self.browser.wait(crosses), 4)
         alarm = self.browser.script("return [...document.querySelectorAll('.alarm')].map((node) => node.textContent)")
@@ -231,14 +231,14 @@ class Report(unittest.TestCase):
 
     def test_many_curves_are_told_apart_by_a_scale_of_colours(self):
         number = self.figure("grid", "Responses in the steady state")
-        self.assertEqual(self.titles(number), ["Angular frequency [rad/s]", "N0 [SI]", "mass: Amplitude [m]"])
+        self.assertEqual(self.titles(number), ["Angular frequency, Omega [rad/s]", "N0 [SI]", "mass: Amplitude [m]"])
         self.assertEqual(self.legend(number), ["Linear, free", "Linear, stuck"])
         colors = self.browser.script(f"return new Set([...document.querySelectorAll('#figure-{number} .js-line')]"
                                      ".map((line) => line.style.stroke)).size")
         self.assertGreaterEqual(colors, 20)
         map_number = self.figure("grid", "Amplitude over frequency and parameter")
         self.browser.wait(f"return document.querySelector('#figure-{map_number} .heatmaplayer image') !== null")
-        self.assertEqual(self.titles(map_number), ["Angular frequency [rad/s]", "N0 [SI]", "mass amplitude [m]"])
+        self.assertEqual(self.titles(map_number), ["Angular frequency, Omega [rad/s]", "N0 [SI]", "mass amplitude [m]"])
 
     def test_samples_have_percentile_bands_and_a_distribution(self):
         number = self.figure("tolerance", "Percentile bands")

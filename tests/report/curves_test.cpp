@@ -55,7 +55,7 @@ class Sweep : public TableSource {
   mutable std::size_t largest_piece_ = 0;
 };
 
-const Attributes response{{"type", "frequency_response"}, {"swept", "N0, mu"}};
+const Attributes response{{"type", "frequency_response"}, {"swept_parameters", "N0, mu"}};
 
 /// `points` frequencies for each preload; the amplitude is the frequency, but for one peak a curve.
 Sweep preload_sweep(std::size_t preloads, std::size_t points, std::size_t peak_at = 0) {

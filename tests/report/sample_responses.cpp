@@ -51,13 +51,13 @@ const std::vector<std::string> statuses{"converged", "not converged", "subharmon
 
 void add_response_blocks(results::TableLayout& layout, bool is_full) {
   layout.blocks.push_back(column("angular_frequency", "rad/s"));
-  layout.blocks.push_back(column("amplitude", "m", "observed", observed));
+  layout.blocks.push_back(column("amplitude", "m", "coordinate", observed));
   if (is_full) {
-    layout.blocks.push_back(column("velocity_amplitude", "m/s", "observed", observed));
-    layout.blocks.push_back(column("acceleration_amplitude", "m/s2", "observed", observed));
+    layout.blocks.push_back(column("velocity_amplitude", "m/s", "coordinate", observed));
+    layout.blocks.push_back(column("acceleration_amplitude", "m/s2", "coordinate", observed));
   }
-  layout.blocks.push_back(column("phase", "rad", "observed", observed));
-  if (is_full) layout.blocks.push_back(column("harmonic3_amplitude", "m", "observed", observed));
+  layout.blocks.push_back(column("phase", "rad", "coordinate", observed));
+  if (is_full) layout.blocks.push_back(column("harmonic3_amplitude", "m", "coordinate", observed));
   layout.blocks.push_back(column("dissipated", "J", "slider", sliders));
   layout.blocks.push_back(column("slip_share", "1", "slider", sliders));
   layout.blocks.push_back(column("viscous_work", "J"));
@@ -83,15 +83,17 @@ void append_response(std::vector<double>& row, const Mass& mass, double omega, b
 }
 
 void add_linear(results::Sink& sink, const std::string& analysis) {
-  results::TableLayout layout{analysis, "linear", "point", {column("limit", "1", "", {}, {"free", "stuck"})}, {}};
-  layout.blocks.push_back(column("angular_frequency", "rad/s"));
-  layout.blocks.push_back(column("amplitude", "m", "observed", observed));
-  layout.blocks.push_back(column("phase", "rad", "observed", observed));
+  results::TableLayout layout{analysis, "linear", "point", {column("angular_frequency", "rad/s")}, {}};
+  for (const char* limit : {"free", "stuck"}) {
+    layout.blocks.push_back(column(limit + std::string("_amplitude"), "m", "coordinate", observed));
+    layout.blocks.push_back(column(limit + std::string("_phase"), "rad", "coordinate", observed));
+  }
   std::vector<std::vector<double>> rows;
-  for (const int limit : {0, 1}) {
-    for (double omega = 0.5; omega <= 2.0; omega += 0.01) {
-      const std::complex<double> x = 1.0 / std::complex<double>(1.0 + limit - omega * omega, 0.2 * omega);
-      rows.push_back({static_cast<double>(limit), omega, std::abs(x), 0.8 * std::abs(x), std::arg(x), std::arg(x)});
+  for (double omega = 0.5; omega <= 2.0; omega += 0.01) {
+    rows.push_back({omega});
+    for (const double slider : {0.0, 1.0}) {
+      const std::complex<double> x = 1.0 / std::complex<double>(1.0 + slider - omega * omega, 0.2 * omega);
+      rows.back().insert(rows.back().end(), {std::abs(x), 0.8 * std::abs(x), std::arg(x), std::arg(x)});
     }
   }
   add_table(sink, layout, rows);
@@ -102,7 +104,7 @@ void add_waveforms(results::Sink& sink, const std::string& analysis, const std::
   results::TableLayout layout{analysis, "waveforms", "point", {column("N0", "")}, {}};
   layout.blocks.push_back(column("angular_frequency", "rad/s"));
   layout.blocks.push_back(column("time", "s"));
-  layout.blocks.push_back(column("position", "m", "observed", observed));
+  layout.blocks.push_back(column("position", "m", "coordinate", observed));
   layout.blocks.push_back(column("force", "N", "slider", sliders));
   layout.blocks.push_back(column("displacement", "m", "slider", sliders));
   std::vector<std::vector<double>> rows;
@@ -129,12 +131,8 @@ void add_waveforms(results::Sink& sink, const std::string& analysis, const std::
 void add_preload_sweep(results::Sink& sink) {
   const std::string name = "preloads";
   results::TableLayout layout{name, "", "point", {column("N0", "")}, {}};
-  layout.attributes = {{"type", "frequency_response"},
-                       {"solver", "periodic"},
-                       {"excitation", "Omega"},
-                       {"swept", "N0"},
-                       {"sweep", "grid"},
-                       {"start", "unloaded"}};
+  layout.attributes = {{"type", "frequency_response"}, {"solver", "periodic"}, {"excitation", "Omega"},
+                       {"swept_parameters", "N0"},     {"sweep", "grid"},      {"start", "unloaded"}};
   add_response_blocks(layout, true);
   const std::vector<double> preloads{0.0, 0.3, 0.8, 1.2, 4.0};
   std::vector<std::vector<double>> rows;
@@ -157,7 +155,7 @@ void add_grid_sweep(results::Sink& sink) {
   layout.attributes = {{"type", "frequency_response"},
                        {"solver", "harmonic_balance"},
                        {"excitation", "Omega"},
-                       {"swept", "mu N0"},
+                       {"swept_parameters", "mu, N0"},
                        {"sweep", "grid"},
                        {"start", "previous"}};
   add_response_blocks(layout, false);
@@ -182,7 +180,7 @@ void add_random_sweep(results::Sink& sink) {
   layout.attributes = {{"type", "frequency_response"},
                        {"solver", "harmonic_balance"},
                        {"excitation", "Omega"},
-                       {"swept", "N0, m1"},
+                       {"swept_parameters", "N0, m1"},
                        {"sweep", "random"},
                        {"start", "unloaded"}};
   add_response_blocks(layout, false);
@@ -199,17 +197,22 @@ void add_random_sweep(results::Sink& sink) {
     }
   }
   add_table(sink, layout, rows);
-  results::TableLayout bands{name, "bands", "point", {column("angular_frequency", "rad/s")}, {}};
-  bands.blocks.push_back(column("percentile", "1"));
-  bands.blocks.push_back(column("amplitude", "m", "observed", observed));
+  const std::vector<int> percents{5, 25, 50, 75, 95};
+  results::TableLayout bands{name, "bands", "frequency", {column("angular_frequency", "rad/s")}, {}};
+  for (const int percent : percents)
+    bands.blocks.push_back(
+        column((percent < 10 ? "amplitude_p0" : "amplitude_p") + std::to_string(percent), "m", "coordinate", observed));
+  bands.blocks.push_back(column("missing", "1"));
   std::vector<std::vector<double>> band_rows;
   for (std::size_t i = 0; i < points; ++i) {
     std::vector<double>& values = amplitudes[i];
     std::sort(values.begin(), values.end());
-    for (const double percentile : {5.0, 25.0, 50.0, 75.0, 95.0}) {
-      const double value = values[static_cast<std::size_t>(percentile / 100.0 * (samples - 1))];
-      band_rows.push_back({0.5 + 1.5 * static_cast<double>(i) / (points - 1), percentile, value, 0.8 * value});
+    band_rows.push_back({0.5 + 1.5 * static_cast<double>(i) / (points - 1)});
+    for (const int percent : percents) {
+      const double value = values[static_cast<std::size_t>(percent) * (samples - 1) / 100];
+      band_rows.back().insert(band_rows.back().end(), {value, 0.8 * value});
     }
+    band_rows.back().push_back(0.0);
   }
   add_table(sink, bands, band_rows);
   sink.conclude(name, "done", "", {{"points", std::to_string(rows.size())}});
@@ -221,7 +224,7 @@ void add_damper_curve(results::Sink& sink) {
   const std::vector<std::pair<std::string, std::string>> attributes{
       {"type", "damper_curve"}, {"solver", "periodic"}, {"parameter", "N0"}};
   results::TableLayout layout{name, "", "point", {column("N0", ""), column("angular_frequency", "rad/s")}, attributes};
-  layout.blocks.push_back(column("amplitude", "m", "observed", blades));
+  layout.blocks.push_back(column("amplitude", "m", "coordinate", blades));
   for (const char* what : {"objective", "residual", "error"})
     layout.blocks.push_back(column(what, what == std::string("objective") ? "m" : "1"));
   layout.blocks.push_back(column("status", "1", "", {}, statuses));
@@ -232,7 +235,7 @@ void add_damper_curve(results::Sink& sink) {
   };
   results::TableLayout tracked{name, "peaks", "point", {column("N0", ""), column("peak", "1")}, {}};
   tracked.blocks.push_back(column("angular_frequency", "rad/s"));
-  tracked.blocks.push_back(column("amplitude", "m", "observed", blades));
+  tracked.blocks.push_back(column("amplitude", "m", "coordinate", blades));
   std::vector<std::vector<double>> rows, peaks;
   for (int k = 0; k < 60; ++k) {
     const double preload = std::pow(10.0, 3.0 * k / 59.0);

@@ -58,9 +58,9 @@ std::optional<CurveLayout> curve_layout(const TableSource& table, const Attribut
   if (!abscissa) abscissa = index_of("angular_frequency");
   if (!abscissa) return std::nullopt;
 
-  std::vector<std::string> names = words_of(attribute(analysis, "swept"));
+  std::vector<std::string> names = words_of(attribute(analysis, "swept_parameters"));
   if (!parameter.empty()) names.push_back(parameter);
-  for (const char* kind : {"limit", "direction", "percentile", "peak", "case", "sample"}) names.emplace_back(kind);
+  for (const char* kind : {"direction", "peak"}) names.emplace_back(kind);
   if (variables[*abscissa].name == "time") names.emplace_back("angular_frequency");
   CurveLayout layout{*abscissa, {}};
   for (std::size_t i = 0; i < variables.size(); ++i) {

@@ -21,9 +21,9 @@ struct CurveRows {
 /// The layout of a table of a frequency response or of a damper curve, nothing for other tables.
 ///
 /// The abscissa is `time` where there is one, else `angular_frequency`; of the main table of a damper curve it is its
-/// parameter. Keys are the swept parameters, what names the kind of a row (`limit`, `direction`, `percentile`, `peak`),
-/// and, under a time, `angular_frequency`.
-/// @param analysis  attributes of the table's analysis: `type`, `swept` (names apart by commas or blanks), `parameter`
+/// parameter. Keys are the swept parameters, what names the kind of a row (`direction`, `peak`) and, under a time,
+/// `angular_frequency`.
+/// @param analysis  attributes of the table's analysis: `type`, `swept_parameters` (names apart by commas), `parameter`
 std::optional<CurveLayout> curve_layout(const TableSource& table, const Attributes& analysis);
 
 /// The curves of a table in their order. Reads the keys and the abscissa once, in pieces.

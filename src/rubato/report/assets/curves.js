@@ -3,6 +3,8 @@
 /** A parameter of the study or another variable, as the title of an axis. Studies are in SI; parameters tell no unit. */
 function quantity_label(table, index) {
   const variable = table.variables[index];
+  const {excitation} = table.attributes;
+  if (variable.name === "angular_frequency" && excitation) return `Angular frequency, ${excitation} [rad/s]`;
   const is_parameter = table.curves && table.curves.keys.includes(index) && (!variable.unit || variable.unit === "1");
   return is_parameter ? `${variable.name} [SI]` : axis_label(variable);
 }
@@ -20,18 +22,6 @@ function curves_of(table) {
   return starts.slice(0, -1).map((from, index) => ({
     from, to: starts[index + 1], keys: keys.map((key) => table.overview[key][0][from]),
   }));
-}
-
-/** Rows of equal keys, wherever they stand: [{keys, rows: [index, ...]}]. For short tables that are shown whole. */
-function rows_by(table, keys) {
-  const groups = new Map();
-  for (let row = 0; row < table.overview[0][0].length; ++row) {
-    const values = keys.map((key) => table.overview[key][0][row]);
-    const name = values.join(" ");
-    if (!groups.has(name)) groups.set(name, {keys: values, rows: []});
-    groups.get(name).rows.push(row);
-  }
-  return [...groups.values()];
 }
 
 /** Places (in `table.curves.keys`) of the keys that take more than one value among the curves. */

@@ -111,6 +111,18 @@ function optimum_table(table, optimum) {
   });
 }
 
+/** Rows of equal keys, wherever they stand: [{keys, rows: [index, ...]}]. For short tables that are shown whole. */
+function rows_by(table, keys) {
+  const groups = new Map();
+  for (let row = 0; row < table.overview[0][0].length; ++row) {
+    const values = keys.map((key) => table.overview[key][0][row]);
+    const name = values.join(" ");
+    if (!groups.has(name)) groups.set(name, {keys: values, rows: []});
+    groups.get(name).rows.push(row);
+  }
+  return [...groups.values()];
+}
+
 function peaks_tracked_figure(table, main) {
   const number = table.variables.findIndex((variable) => /^peak/.test(variable.name) && !variable.dimension);
   const parameter = variable_of(table, main.variables[main.curves.abscissa].name);

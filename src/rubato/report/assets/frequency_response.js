@@ -23,7 +23,7 @@ function statuses_of(table) {
   const total = counts.reduce((sum, count) => sum + count, 0);
   if (failed) {
     body.push(element("div", {class: "alarm", role: "alert"}, element("b", {}, `Not all of the ${count_text(total)} points converged: `),
-                      `${failed}. They are marked in the figures; their numbers are the best that was found.`));
+                      `${failed}. Where they have numbers these are the best that was found; crosses mark them in the figures.`));
   }
   const worst = (name) => {
     const found = variable_of(table, name);
@@ -60,25 +60,33 @@ function flagged_traces(table, variable, label) {
   });
 }
 
-/** Both linear limits, where the table `linear` has the quantity and few enough curves. */
-function limit_traces(linear, name, label, palette_index = null) {
-  const variable = linear && variable_of(linear, name);
-  if (!variable || !linear.curves || label >= variable.labels.length) return [];
+// So many pairs of limits are drawn: where the structure differs from curve to curve they would hide the responses.
+const most_limits = 3;
+
+const has_limits = (linear) => Boolean(linear && linear.curves && linear.curves.count <= most_limits);
+
+/**
+ * Both linear limits of a quantity, where the table `linear` has it: without sliders (dashed), with all of them stuck
+ * (dotted). In grey, or in the colour of the curve that they belong to.
+ */
+function limit_traces(linear, name, label, color = null) {
+  if (!has_limits(linear)) return [];
   const curves = curves_of(linear);
-  const limit_place = linear.curves.keys.findIndex((key) => linear.variables[key].name === "limit");
-  if (limit_place < 0 || curves.length > 6) return [];
   const places = varying_keys(linear, curves);
-  return curves.map((curve) => {
-    const word = value_text(linear.variables[linear.curves.keys[limit_place]], curve.keys[limit_place]);
-    const rest = curve_name(linear, curve, places.filter((place) => place !== limit_place));
-    const name_shown = `Linear, ${word}${rest ? ` (${rest})` : ""}${palette_index === null ? "" : `: ${variable.labels[label]}`}`;
-    const x = linear.overview[linear.curves.abscissa][0].slice(curve.from, curve.to);
-    const y = linear.overview[variable.index][label].slice(curve.from, curve.to);
-    return {
-      type: "scatter", mode: "lines", ...(is_angle(name) ? broken_at_turns(x, y) : {x, y}), name: plot_text(name_shown), showlegend: true,
-      line: {color: palette_index === null ? "#59636d" : palette[palette_index % palette.length], width: 1.3, dash: word.startsWith("free") ? "dash" : "dot"},
-      hovertemplate: `${plot_text(name_shown)}<br>%{x:.6~g}, %{y:.5~g}<extra></extra>`,
-    };
+  return ["free", "stuck"].flatMap((limit) => {
+    const variable = variable_of(linear, `${limit}_${name}`);
+    if (!variable || label >= variable.labels.length) return [];
+    return curves.map((curve) => {
+      const rest = curve_name(linear, curve, places);
+      const shown = `Linear, ${limit}${rest ? ` (${rest})` : ""}${color === null ? "" : `: ${variable.labels[label]}`}`;
+      const x = linear.overview[linear.curves.abscissa][0].slice(curve.from, curve.to);
+      const y = linear.overview[variable.index][label].slice(curve.from, curve.to);
+      return {
+        type: "scatter", mode: "lines", ...(is_angle(name) ? broken_at_turns(x, y) : {x, y}), name: plot_text(shown), showlegend: true,
+        line: {color: color ?? "#59636d", width: 1.3, dash: limit === "free" ? "dash" : "dot"},
+        hovertemplate: `${plot_text(shown)}<br>%{x:.6~g}, %{y:.5~g}<extra></extra>`,
+      };
+    });
   });
 }
 
@@ -128,7 +136,7 @@ function family_figure(table, variables, {caption, linear = null, with_scale = f
         })
         : family_traces(table, curves, (curve) => values(curve, label), colors[color_at < 0 ? 0 : chosen[color_at]], hover);
       // The limits lie under the curves.
-      const limits = shown.flatMap((which) => limit_traces(linear, variable.name, which, is_single && shown.length > 1 ? which : null));
+      const limits = shown.flatMap((which) => limit_traces(linear, variable.name, which, is_single && shown.length > 1 ? line_style(which).color : null));
       const flags = shown.flatMap((which) => flagged_traces(table, variable, which)).map((trace, index, all) => (
         {...trace, showlegend: all.findIndex((other) => other.name === trace.name) === index}));
       traces.unshift(...limits);
@@ -349,47 +357,47 @@ function sensitivity_figure(table, variable, numeric, some) {
   });
 }
 
-/** Percentile bands: pairs of percentiles that enclose the median, shaded, the widest first. */
-function bands_figure(table) {
-  const percentile = variable_of(table, "percentile"), frequency = variable_of(table, "angular_frequency");
-  const quantities = variables_named(table, /^(?!percentile$|angular_frequency$)/).filter((variable) => variable.dimension && !variable.categories.length);
-  if (!percentile || !frequency || !quantities.length) return null;
+/** Percentile bands of the amplitude: the variables amplitude_p05, amplitude_p25, ...; pairs about the median are shaded. */
+function bands_figure(table, excitation) {
+  const levels = variables_named(table, /^amplitude_p\d+$/).filter((variable) => variable.dimension)
+    .map((variable) => ({percent: Number(variable.name.slice("amplitude_p".length)), variable})).sort((a, b) => a.percent - b.percent);
+  if (!levels.length || !table.curves) return null;
+  const [{variable: first}] = levels;
+  const curves = curves_of(table), places = varying_keys(table, curves);
   const choosers = [];
   const add = (chooser) => (chooser ? choosers.push(chooser) - 1 : -1);
-  const quantity_at = add(quantities.length > 1 ? {label: "Quantity", options: quantities.map((variable) => quantity_phrase(variable.name))} : null);
-  const label_at = add(label_chooser(quantities[0]));
+  const label_at = add(label_chooser(first));
+  const curve_at = add(curves.length > 1 ? {label: "Direction", options: curves.map((curve) => curve_name(table, curve, places))} : null);
   const scale_at = add({label: "Scale", options: ["Linear", "Logarithmic"]});
-  const levels = rows_by(table, [percentile.index]).map((group) => ({level: group.keys[0], rows: group.rows})).sort((a, b) => a.level - b.level);
-  // A share or a number of hundred.
-  const in_percent = (level) => (levels.at(-1).level <= 1 ? 100 * level : level);
-  const text = (level) => Number(in_percent(level).toPrecision(4));
   const pairs = levels.slice(0, Math.floor(levels.length / 2)).map((low, index) => [low, levels[levels.length - 1 - index]]);
   const fills = ["rgba(0,114,178,0.16)", "rgba(0,114,178,0.26)", "rgba(0,114,178,0.34)"];
+  const missing = variable_of(table, "missing");
+  const lacking = missing ? table.maxima[missing.index][0] : 0;
   return make_figure({
-    caption: "Percentile bands over the samples: at each frequency the band holds the middle share of them; the line is the median.",
+    caption: "Percentile bands over the samples: at each frequency the band holds the middle share of them; the line is the median." +
+      (lacking > 0 ? ` Up to ${count_text(lacking)} samples have no amplitude at a frequency and do not count there.` : ""),
     choosers, height: 430,
     draw: (chosen) => {
-      const variable = quantities[quantity_at < 0 ? 0 : chosen[quantity_at]], label = label_at < 0 ? 0 : chosen[label_at];
-      const line = (level) => {
-        const rows = [...level.rows].sort((a, b) => table.overview[frequency.index][0][a] - table.overview[frequency.index][0][b]);
-        return {x: rows.map((row) => table.overview[frequency.index][0][row]), y: rows.map((row) => table.overview[variable.index][label][row])};
-      };
-      const hover = (level) => `${text(level)} %: %{y:.5~g} ${pretty_unit(variable.unit)} at %{x:.6~g} rad/s<extra></extra>`;
+      const label = label_at < 0 ? 0 : chosen[label_at], curve = curves[curve_at < 0 ? 0 : chosen[curve_at]];
+      const slice = (index, which) => table.overview[index][which].slice(curve.from, curve.to);
+      const line = ({percent, variable}) => ({
+        type: "scatter", mode: "lines", x: slice(table.curves.abscissa, 0), y: slice(variable.index, label),
+        hovertemplate: `${percent} %: %{y:.5~g} ${pretty_unit(variable.unit)} at %{x:.6~g} rad/s<extra></extra>`,
+      });
+      const edge = {line: {width: 0.6, color: "#0072b2"}};
       const traces = pairs.flatMap(([low, high], index) => [
-        {type: "scatter", mode: "lines", ...line(low), line: {width: 0.6, color: "#0072b2"}, showlegend: false, legendgroup: `band ${index}`,
-         hovertemplate: hover(low.level)},
-        {type: "scatter", mode: "lines", ...line(high), line: {width: 0.6, color: "#0072b2"}, fill: "tonexty", fillcolor: fills[index] ?? fills.at(-1),
-         name: `${text(low.level)} to ${text(high.level)} %`, legendgroup: `band ${index}`, showlegend: true, hovertemplate: hover(high.level)},
+        {...line(low), ...edge, showlegend: false, legendgroup: `band ${index}`},
+        {...line(high), ...edge, fill: "tonexty", fillcolor: fills[index] ?? fills.at(-1), name: `${low.percent} to ${high.percent} %`,
+         legendgroup: `band ${index}`, showlegend: true},
       ]);
       if (levels.length % 2 === 1) {
         const middle = levels[(levels.length - 1) / 2];
-        traces.push({type: "scatter", mode: "lines", ...line(middle), name: text(middle.level) === 50 ? "Median" : `${text(middle.level)} %`, showlegend: true,
-                     line: {color: "#1c242c", width: 2}, hovertemplate: hover(middle.level)});
+        traces.push({...line(middle), name: middle.percent === 50 ? "Median" : `${middle.percent} %`, showlegend: true, line: {color: "#1c242c", width: 2}});
       }
       return {traces, layout: {
-        xaxis: axis(axis_label(frequency)),
-        yaxis: axis(`${variable.labels[label]}: ${quantity_phrase(variable.name)} [${pretty_unit(variable.unit)}]`,
-                    chosen[scale_at] === 1 ? log_axis(table.overview[variable.index][label]) : {rangemode: "tozero"}),
+        xaxis: axis(excitation),
+        yaxis: axis(`${first.labels[label]}: Amplitude [${pretty_unit(first.unit)}]`,
+                    chosen[scale_at] === 1 ? log_axis(levels.flatMap(({variable}) => slice(variable.index, label))) : {rangemode: "tozero"}),
       }};
     },
   });
@@ -405,7 +413,7 @@ function write_frequency_response(chapter, analysis) {
   const is_random = Boolean(bands) || /random|sample/.test(analysis.attributes.sweep ?? "");
   const statuses = statuses_of(table);
   if (statuses.length) add_section(chapter, "Points", statuses);
-  const limits = linear ? " Dashed and dotted: the linear limits, sliders free and sliders stuck." : "";
+  const limits = has_limits(linear) ? " Dashed and dotted: the linear limits, sliders free and sliders stuck." : "";
   const sizes = variables_named(table, /^(amplitude|velocity_amplitude|acceleration_amplitude|rms|harmonic_?\d+_amplitude)$/);
   if (sizes.length) {
     const kinds = "Amplitude is half of peak to peak over a period.";
@@ -413,7 +421,7 @@ function write_frequency_response(chapter, analysis) {
       caption: `Responses in the steady state. ${kinds}${limits}`, linear, with_scale: true, height: 470}));
   }
   if (bands) {
-    const figure = bands_figure(bands);
+    const figure = bands_figure(bands, quantity_label(table, table.curves.abscissa));
     if (figure) add_section(chapter, "Percentile bands", figure);
   }
   const amplitude = variable_of(table, "amplitude");
