@@ -25,6 +25,8 @@ class LocallyNonlinear {
     Loads loads;
     State start;                           ///< t = 0; q, v of the model; sliders without force
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
+    /// Characteristic size of the model for error measures (integrate::reference_value) [m sqrt(kg)]; 0: it has none.
+    double reference = 0.0;
   };
 
   explicit LocallyNonlinear(Parts parts);
@@ -38,6 +40,7 @@ class LocallyNonlinear {
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
+  double reference() const { return parts_.reference; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
   /// u = x_first - x_second of slider i [m]
@@ -63,7 +66,8 @@ class EquilibriumAcceleration {
   explicit EquilibriumAcceleration(const LocallyNonlinear& system);
   ~EquilibriumAcceleration();
   EquilibriumAcceleration(EquilibriumAcceleration&&) noexcept;
-  void operator()(const State& state, Vector& acceleration);
+  /// @param side  which limit to take of a load that jumps at state.t
+  void operator()(const State& state, Vector& acceleration, model::Side side = model::Side::right);
 
  private:
   struct Workspace;
