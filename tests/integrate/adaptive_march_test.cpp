@@ -219,6 +219,72 @@ TEST(SmallestStep, EndsTheMarchWithTheStateThatWasReached) {
   EXPECT_LT(marched.report.march.failed_step, 0.01);
 }
 
+/// The lengths of the accepted steps.
+struct Lengths final : TryLog {
+  void tried(const StepTry& step_try) override {
+    if (step_try.outcome == TryOutcome::accepted) steps.push_back(step_try.step);
+  }
+  std::vector<double> steps;
+};
+
+struct Errors {
+  double q = 0.0, v = 0.0, a = 0.0;
+};
+
+/// The largest errors when every step is taken in 2^splits equal parts.
+Errors errors_of(const system::LocallyNonlinear& system, const Method& method, const std::vector<double>& steps,
+                 int splits) {
+  const testing::FreeVibration truth(system);
+  const auto stepper = make_stepper(method, system);
+  system::EquilibriumAcceleration equilibrium(system);
+  Vector acceleration(system.size());
+  system::State from = consistent_start(system, system.start()), to = from;
+  Errors errors;
+  double last = steps.front();
+  for (const double step : steps) {
+    if (step != last) stepper->step_changes(from, step / last);
+    last = step;
+    for (int part = 0; part < 1 << splits; ++part) {
+      const double h = std::ldexp(step, -splits);
+      EXPECT_EQ(stepper->attempt(from, h, from.t + h, to).outcome, StepOutcome::accepted);
+      std::swap(from, to);
+    }
+    equilibrium(from, acceleration);
+    errors.q = std::max(errors.q, (from.q - truth.at(from.t)).norm());
+    errors.v = std::max(errors.v, (from.v - truth.at(from.t, 1)).norm());
+    errors.a = std::max(errors.a, (acceleration - truth.at(from.t, 2)).norm());
+  }
+  return errors;
+}
+
+class SplitSteps : public ::testing::TestWithParam<std::string> {};
+
+// The steps of a run whose lengths vary, each split in two, and again: displacement, velocity and the acceleration of
+// equilibrium are of second order, each ratio within 8 % of 4 in the asymptotic range.
+TEST_P(SplitSteps, LowerEveryErrorWithSecondOrder) {
+  const Linear model = linear_model("chain");
+  const Method method = make_method(GetParam());
+  Lengths lengths;
+  StepPlan plan;
+  plan.controller = CardonaCassano{};
+  (void)run(model.system, method, InertiaJump{3e-3, 0.0, false}, plan, model.end, nullptr, &lengths);
+  ASSERT_GT(lengths.steps.size(), 50u);
+  ASSERT_GT(*std::max_element(lengths.steps.begin(), lengths.steps.end()),
+            1.3 * *std::min_element(lengths.steps.begin(), lengths.steps.end()));
+  Errors last = errors_of(model.system, method, lengths.steps, 1);
+  for (int splits = 2; splits <= 3; ++splits) {
+    const Errors next = errors_of(model.system, method, lengths.steps, splits);
+    EXPECT_NEAR(last.q / next.q, 4.0, 0.32);
+    EXPECT_NEAR(last.v / next.v, 4.0, 0.32);
+    EXPECT_NEAR(last.a / next.a, 4.0, 0.32);
+    last = next;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, SplitSteps,
+                         ::testing::Values("average_acceleration", "hht", "wbz", "generalized_alpha", "wilson_theta"),
+                         [](const auto& info) { return info.param; });
+
 // A load by a table: from rest, 1 N from 1 s to 1.5 s, zero before and after.
 TEST(TableLoad, IsNeverSteppedOverAndItsJumpsRestartTheMarch) {
   system::LocallyNonlinear::Parts parts;

@@ -49,13 +49,6 @@ TEST(Analysis, ReadsModes) {
             "disk, blade)");
 }
 
-TEST(AnalysisError, SaysThatStepsAreNotAutomaticYet) {
-  EXPECT_EQ(
-      verdict_with("step = 0.005", "step = { tolerance = 1e-3 }"),
-      "study.toml:40:8: error: analysis \"response\": automatic steps are not available in this version; give the step "
-      "as a number [s]");
-}
-
 TEST(AnalysisError, AsksForAStepExceptOfTheExactFlow) {
   EXPECT_EQ(verdict_with("step = 0.005\n", ""),
             "study.toml:37:1: error: analysis \"response\": the key \"step\" [s] is missing");

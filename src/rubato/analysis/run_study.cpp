@@ -34,7 +34,8 @@ AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinea
     result.summary = fmt::format("transient, {}, {:.0f} steps of {} s to t = {} s", plan.method.name,
                                  std::ceil(plan.duration / plan.step * (1.0 - 1e-12)), plan.step, plan.duration);
   else
-    result.summary = fmt::format("transient, {}, to t = {} s", plan.method.name, plan.duration);
+    result.summary = fmt::format("transient, {}, {}to t = {} s", plan.method.name,
+                                 plan.automatic ? summary(*plan.automatic) + ", " : "", plan.duration);
   return result;
 }
 

@@ -57,8 +57,10 @@ void require_stable(const TransientPlan& plan, const system::LocallyNonlinear& s
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where) {
   plan.output = output.kind;
-  const bool is_exact = plan.step == 0.0;
-  const double steps = is_exact ? 0.0 : std::ceil(plan.duration / plan.step);
+  const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
+  const double steps = is_exact         ? 0.0
+                       : plan.automatic ? plan.automatic->expected_steps
+                                        : std::ceil(plan.duration / plan.step);
   switch (output.kind) {
     case Kind::every_step:
       plan.rows = steps + 1.0;
@@ -133,10 +135,13 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan.duration = positive(description.duration, parameters, title + "duration", where);
   plan.energy = description.energy;
   const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
-  if (is_exact && description.step)
-    throw InvalidInput(place(description.step->where, where),
+  if (is_exact && (description.step || description.automatic_step))
+    throw InvalidInput(place(description.step ? description.step->where : description.automatic_step->where, where),
                        title + "the method exact takes no step; remove the key, or choose another method");
-  if (!is_exact) {
+  if (description.automatic_step) {
+    plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, parameters,
+                                         plan.duration, description.allow_unstable);
+  } else if (!is_exact) {
     if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
     plan.step = positive(*description.step, parameters, title + "step", where);
     if (plan.step > plan.duration)

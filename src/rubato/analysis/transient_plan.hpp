@@ -1,9 +1,11 @@
 #pragma once
 
+#include <rubato/analysis/automatic_step.hpp>
 #include <rubato/integrate/method.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,8 @@ struct Observed {
 /// A transient with all its values: what the description says, evaluated and found possible.
 struct TransientPlan {
   integrate::Method method;
-  double step = 0.0;      ///< [s]; 0 for `exact`
+  double step = 0.0;  ///< [s]; 0 for `exact` and for an automatic step
+  std::optional<AutomaticStep> automatic;
   double duration = 0.0;  ///< [s]
   std::vector<Observed> observed;
   model::OutputDescription::Kind output = model::OutputDescription::Kind::every_step;

@@ -1,4 +1,5 @@
 #include <rubato/io/read_parts.hpp>
+#include <rubato/io/read_step.hpp>
 
 #include <fmt/format.h>
 
@@ -85,11 +86,10 @@ TransientDescription read_transient(TomlReader& reader) {
   TransientDescription transient;
   if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
   if (const toml::node* step = reader.node("step")) {
-    if (step->is_table())
-      throw InvalidInput(
-          reader.location(*step),
-          reader.what() + ": automatic steps are not available in this version; give the step as a number [s]");
-    transient.step = reader.quantity("step");
+    if (const auto* table = step->as_table())
+      transient.automatic_step = read_step(reader, *table);
+    else
+      transient.step = reader.quantity("step");
   }
   transient.duration = reader.quantity("duration");
   transient.output = read_output(reader);

@@ -173,10 +173,25 @@ struct OutputDescription {
   Location where;
 };
 
+/// A step that chooses itself: step = { tolerance = ... }.
+struct StepDescription {
+  Quantity tolerance;      ///< [-]
+  std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
+  std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
+  std::optional<Quantity> first, smallest, largest;  ///< [s]
+  bool locate_events = false;                        ///< end steps where sliders change their state
+  std::optional<Quantity> reference;                 ///< l of inertia_jump [m sqrt(kg)]
+  bool reference_is_initial = false;                 ///< l = |q0|_M even where the model has a value of its own
+  bool as_printed = false;                           ///< inertia_jump with the misprint of its source
+  bool rebuild = true;                               ///< the auxiliary acceleration when the step changes
+  Location where;
+};
+
 struct TransientDescription {
   MethodDescription method;
-  std::optional<Quantity> step;  ///< [s]; not for `exact`
-  Quantity duration;             ///< [s]
+  std::optional<Quantity> step;                   ///< [s]; not for `exact`
+  std::optional<StepDescription> automatic_step;  ///< instead of `step`
+  Quantity duration;                              ///< [s]
   OutputDescription output;
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
   bool energy = true;                                          ///< keep the energy ledger

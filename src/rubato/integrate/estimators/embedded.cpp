@@ -131,7 +131,7 @@ class WilsonEstimator final : public EmbeddedEstimator {
       : EmbeddedEstimator(tolerance, 0.5, system, duration),
         linear_(make_alpha_stepper(GeneralizedAlpha{0.0, 0.0, 1.0 / 6.0, 0.5}, system)),
         other_(system.start()),
-        carried_(1.0 / 12.0 + 0.5 * theta * (theta - 1.0)),
+        carried_(error_constants(WilsonTheta{theta}).velocity_next),
         calibration_(carried_ / (0.25 * theta * (theta - 1.0))) {}
 
   int exponent() const override { return 2; }

@@ -32,4 +32,12 @@ inline ErrorConstants error_constants(const GeneralizedAlpha& p) {
   return c;
 }
 
+/// Wilson-theta carries A = q'' + theta (theta - 1)/2 h^2 q'''', so that its velocity errs by that much more than
+/// linear acceleration's.
+inline ErrorConstants error_constants(const WilsonTheta& method) {
+  ErrorConstants c;
+  c.velocity_next = 1.0 / 12.0 + 0.5 * method.theta * (method.theta - 1.0);
+  return c;
+}
+
 }  // namespace rubato::integrate

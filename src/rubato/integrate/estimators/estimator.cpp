@@ -24,11 +24,12 @@ void require_tolerance(double tolerance, bool is_relative) {
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Method& method,
                                           const system::LocallyNonlinear& system, Stepper& stepper, double duration) {
   const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
+  const auto* wilson = std::get_if<WilsonTheta>(&method.formula);
   if (const auto* embedded = std::get_if<Embedded>(&kind)) {
     require_tolerance(embedded->tolerance, true);
     return make_embedded(*embedded, method, system, stepper, duration);
   }
-  if (!alpha)
+  if (!alpha && !wilson)
     throw InvalidInput(
         fmt::format("the estimator {} reads the acceleration that Newmark's relatives carry, and {} carries none; {}",
                     name_of(kind), method.name,
@@ -36,11 +37,11 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Metho
                                       : "take the method generalized_alpha, or for an explicit one dormand_prince"));
   if (const auto* jump = std::get_if<InertiaJump>(&kind)) {
     require_tolerance(jump->tolerance, false);
-    return make_inertia_jump(*jump, *alpha, system);
+    return make_inertia_jump(*jump, alpha ? *alpha : GeneralizedAlpha{0.0, 0.0, 1.0 / 6.0, 0.5}, system);
   }
   const auto& local = std::get<LocalError>(kind);
   require_tolerance(local.tolerance, true);
-  return make_local_error(local, *alpha, system, duration);
+  return make_local_error(local, alpha ? error_constants(*alpha) : error_constants(*wilson), system, duration);
 }
 
 EstimatorKind default_estimator(const Method& method, double tolerance) {

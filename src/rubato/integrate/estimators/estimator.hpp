@@ -47,7 +47,7 @@ class Estimator {
 ///   eps(Omega) = (1 + alpha) Omega^3 sqrt(1 + Omega^2/4) / (3 pi (1 + (1 + alpha) beta Omega^2))
 ///
 /// TOL is the share of the response, relative to l, that modes with omega h > 0.6 may carry; the error of the solution
-/// that it leaves depends on the problem. 1 + alpha is 1 - alpha_f.
+/// that it leaves depends on the problem. 1 + alpha is 1 - alpha_f; Wilson-theta counts as linear acceleration.
 struct InertiaJump {
   double tolerance = 1e-3;
   double reference = 0.0;   ///< l [m sqrt(kg)]; 0: |q0|_M (eq. 30), which must then not vanish

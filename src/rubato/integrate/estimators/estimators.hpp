@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/estimators/error_constants.hpp>
 #include <rubato/integrate/estimators/estimator.hpp>
 
 // One factory an estimator; make_estimator chooses among them.
@@ -7,7 +8,7 @@ namespace rubato::integrate {
 
 std::unique_ptr<Estimator> make_inertia_jump(const InertiaJump& kind, const GeneralizedAlpha& method,
                                              const system::LocallyNonlinear& system);
-std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const GeneralizedAlpha& method,
+std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const ErrorConstants& constants,
                                             const system::LocallyNonlinear& system, double duration);
 std::unique_ptr<Estimator> make_embedded(const Embedded& kind, const Method& method,
                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration);

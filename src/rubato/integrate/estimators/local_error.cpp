@@ -12,10 +12,10 @@ namespace {
 /// auxiliary acceleration where it must settle first, so that the first J after it is good for q''' alone.
 class LocalErrorEstimator final : public Estimator {
  public:
-  LocalErrorEstimator(const LocalError& kind, const GeneralizedAlpha& method, const system::LocallyNonlinear& system,
+  LocalErrorEstimator(const LocalError& kind, const ErrorConstants& constants, const system::LocallyNonlinear& system,
                       double duration)
       : tolerance_(kind.tolerance),
-        c_(error_constants(method)),
+        c_(constants),
         scales_(system, duration, 3),
         norm_(system),
         now_(system.size()),
@@ -89,9 +89,9 @@ class LocalErrorEstimator final : public Estimator {
 
 }  // namespace
 
-std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const GeneralizedAlpha& method,
+std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const ErrorConstants& constants,
                                             const system::LocallyNonlinear& system, double duration) {
-  return std::make_unique<LocalErrorEstimator>(kind, method, system, duration);
+  return std::make_unique<LocalErrorEstimator>(kind, constants, system, duration);
 }
 
 }  // namespace rubato::integrate
