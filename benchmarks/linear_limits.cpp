@@ -78,8 +78,8 @@ void responses(const char* name, const system::LocallyNonlinear& system, double 
   double difference = 0.0;
   for (std::size_t i = 0; i < direct.size(); ++i)
     difference = std::max(difference, std::abs(direct[i] - chosen[i]) / direct[i]);
-  fmt::print("{:<40} {:8.2f} s directly, {:.2f} s as chosen ({}), apart by {:.0e}, {:.0f} MB so far\n", name, direct_time,
-             chosen_time, by_modes ? "modes" : "direct", difference, peak_megabytes());
+  fmt::print("{:<40} {:8.2f} s directly, {:.2f} s as chosen ({}), apart by {:.0e}, {:.0f} MB so far\n", name,
+             direct_time, chosen_time, by_modes ? "modes" : "direct", difference, peak_megabytes());
 }
 
 }  // namespace

@@ -78,8 +78,7 @@ struct Check {
   }
 
   AnalysisOutline operator()(const model::TransientDescription& transient) const {
-    const TransientPlan plan =
-        plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters);
+    const TransientPlan plan = plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters);
     if (std::holds_alternative<integrate::Exact>(plan.method.formula))
       check_exact_transient(analysis.where, input.system);
     if (std::holds_alternative<integrate::Exponential>(plan.method.formula))

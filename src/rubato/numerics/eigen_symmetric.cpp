@@ -28,7 +28,7 @@ using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrderin
 
 struct Problem {
   SparseMatrix stiffness, mass;
-  Vector size;  // |K_ii| + M_ii: what a diagonal entry of K - s M is made of
+  Vector size;               // |K_ii| + M_ii: what a diagonal entry of K - s M is made of
   double unit_square = 1.0;  // what an eigenvalue of 1 here is outside [rad2/s2]
 
   SparseMatrix shifted(double s) const { return SparseMatrix(stiffness - s * mass); }

@@ -256,8 +256,8 @@ TEST(DynamicStiffness, ExchangesRowsWhereItMust) {
   }
 }
 
-// A membrane of 22 by 22 masses with Rayleigh damping and a dashpot to the ground that couples the modes; its mode route
-// is held to the direct one.
+// A membrane of 22 by 22 masses with Rayleigh damping and a dashpot to the ground that couples the modes; its mode
+// route is held to the direct one.
 system::LocallyNonlinear membrane(bool is_held) {
   const Index side = 22, n = side * side;
   std::vector<Eigen::Triplet<double>> k;

@@ -23,7 +23,8 @@ auto difference(const SteadyRequest::Observed& observed, const V& x) {
 
 constexpr Index least_points = 20;
 constexpr Index direct_size = 3000;
-constexpr double direct_fill = 10.0;  // entries of the factor a row: below (chains, frames) it costs a few substitutions
+constexpr double direct_fill =
+    10.0;  // entries of the factor a row: below (chains, frames) it costs a few substitutions
 // Beside a resonance a coordinate may stand still (a node) or not be coupled to it: what it does is finite.
 constexpr double takes_no_part = 1e-9;
 

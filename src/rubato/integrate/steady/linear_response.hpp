@@ -9,10 +9,12 @@ namespace rubato::integrate {
 /// By which route a sweep of linear responses goes.
 struct LinearSweep {
   /// Expected number of frequencies. From 20 on, a structure beyond 3,000 coordinates goes by its modes with residual
-  /// vectors (ModalStiffness) where its factors fill in: a factorisation costs more than a few dozen substitutions then.
+  /// vectors (ModalStiffness) where its factors fill in: a factorisation costs more than a few dozen substitutions
+  /// then.
   Index points = 1;
-  double highest = 0.0;     ///< largest frequency times the highest order of the loads [rad/s]; 0: unknown, no modes
-  double tolerance = 1e-9;  ///< of the modes: relative error of the largest displacement; beyond it a point goes directly
+  double highest = 0.0;  ///< largest frequency times the highest order of the loads [rad/s]; 0: unknown, no modes
+  double tolerance =
+      1e-9;  ///< of the modes: relative error of the largest displacement; beyond it a point goes directly
 };
 
 /// The steady response of a structure whose sliders are springs (stuck) or removed (free): one solution of the dynamic

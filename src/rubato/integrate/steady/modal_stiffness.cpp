@@ -13,7 +13,7 @@ using Complex = std::complex<double>;
 
 constexpr Index most_modes = 400;
 constexpr Index most_residual_vectors = 200;
-constexpr double reach = 2.0;        // modes up to so many times the highest frequency
+constexpr double reach = 2.0;          // modes up to so many times the highest frequency
 constexpr double least_pivot = 1e-11;  // relative: K with a smaller one is as good as singular
 constexpr double shift_share = 0.01;   // of the highest frequency squared: s where K is singular
 constexpr int most_attempts = 6;
