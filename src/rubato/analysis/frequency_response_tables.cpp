@@ -17,7 +17,6 @@ using Block = results::Block;
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<int, 5> percents{5, 25, 50, 75, 95};
 
 Block scalar(const std::string& variable, const std::string& unit, const std::string& description) {
   return {variable, unit, description, "", {}};
@@ -69,7 +68,7 @@ Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& in
                         {"start", start_name(plan.start)},
                         {"excitation", input.parameters[plan.excitation].first},
                         {"sweep", sweep_name(plan.sweep.kind())},
-                        {"swept", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
+                        {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
                         {"frequencies", std::to_string(plan.frequencies.size())},
                         {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
@@ -324,7 +323,7 @@ void BandTable::write(results::RowWriter& writer) {
   const std::size_t width = plan_.observed.size();
   std::vector<double> row;
   for (std::size_t step = 0; step < plan_.steps.size(); ++step) {
-    for (const int percent : percents) {
+    for (const int percent : band_percents) {
       row.clear();
       if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
       row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
