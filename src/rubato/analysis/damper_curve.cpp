@@ -59,9 +59,10 @@ class Tables {
       const auto end = std::remove_if(samples.begin(), samples.end(), [](double x) { return std::isnan(x); });
       const auto missing = static_cast<double>(samples.end() - end);
       samples.erase(end, samples.end());
-      for (const int percent : band_percents)
-        bands_->append(std::vector<double>{plan_.values[i], static_cast<double>(percent),
-                                           percentile(samples, percent / 100.0), missing});
+      std::vector<double> row{plan_.values[i]};
+      for (const int percent : band_percents) row.push_back(percentile(samples, percent / 100.0));
+      row.push_back(missing);
+      bands_->append(row);
     }
   }
 

@@ -143,11 +143,13 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
   } else if (count(PointStatus::impossible) > 0) {
     value.status = PointStatus::impossible;
   }
-  if (with_limits)
+  if (with_limits) {
+    value.limits.emplace();
     for (const bool is_stuck : {false, true}) {
       const auto peaks = family.limit_peaks(parameter, is_stuck);
-      if (!peaks.empty()) value.limits[is_stuck ? 1 : 0] = peaks.front();
+      if (!peaks.empty()) (*value.limits)[is_stuck ? 1 : 0] = peaks.front();
     }
+  }
   return value;
 }
 
@@ -174,10 +176,8 @@ DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTable
     const auto found = numbers.next(value.peaks);
     for (std::size_t k = 0; k < found.size(); ++k)
       tables.add_peak(keys, parameter, found[k], value.peaks[k], result.peaks);
-    for (const std::size_t limit : {0u, 1u}) {
-      if (value.limits[limit]) limits[limit] = value.limits[limit];
-      if (limits[limit]) tables.add_limit(keys, parameter, limit == 1, *limits[limit], result.linear);
-    }
+    if (value.limits) limits = *value.limits;
+    tables.add_limits(keys, parameter, limits[0], limits[1], result.linear);
     count_value(value, before + static_cast<double>(i), result.counts);
   }
   if (!result.is_whole || plan.values.size() < 2) return result;

@@ -44,7 +44,7 @@ struct DamperValue {
   integrate::SteadyResponse response;
   PointStatus status = PointStatus::not_converged;
   DamperPeaks::Scan scan;
-  std::array<std::optional<Peak>, 2> limits;  ///< free and stuck, where they were asked for
+  std::optional<std::array<std::optional<Peak>, 2>> limits;  ///< free and stuck, where they were asked for
 };
 
 /// Solves one value; `with_limits`: also the linear limits.

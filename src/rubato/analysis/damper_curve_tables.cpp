@@ -125,12 +125,13 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
             {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
             {"lines", std::to_string(plan.sweep.lines())}}};
 
-  std::vector<Block> limit = keys;
-  limit.push_back(words("limit", "without sliders, or with all of them stuck", {"free", "stuck"}));
-  limit.push_back(frequency);
-  limit.push_back(scalar("objective", "m", "largest over frequency: amplitude"));
-  limit.push_back(largest);
-  linear_ = {name, "linear", "value", limit, {}};
+  std::vector<Block> linear = keys;
+  for (const auto& [limit, description] :
+       {std::pair<std::string, std::string>{"free", "without sliders"}, {"stuck", "with all sliders stuck"}}) {
+    linear.push_back(scalar(limit + "_angular_frequency", "rad/s", "where the amplitude is largest " + description));
+    linear.push_back(scalar(limit + "_objective", "m", "largest amplitude over frequency " + description));
+  }
+  linear_ = {name, "linear", "value", linear, {}};
 
   std::vector<Block> peak = keys;
   peak.push_back(scalar("peak", "1", "a number that follows the peak along the parameter"));
@@ -154,14 +155,12 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
   optimum.push_back(scalar("other_multiplier", "1", "weight of the second peak"));
   optimum_ = {name, "optimum", "line", optimum, {}};
 
-  bands_ = {name,
-            "bands",
-            "band",
-            {scalar(plan.parameter, "", "parameter of the curve"),
-             scalar("percentile", "1", "how many percent of the samples lie below"),
-             scalar("objective", unit, "objective below which so many samples lie"),
-             scalar("missing", "1", "samples without a finite objective")},
-            {}};
+  std::vector<Block> bands{scalar(plan.parameter, "", "parameter of the curve")};
+  for (const int percent : band_percents)
+    bands.push_back(scalar(fmt::format("objective_p{:02}", percent), unit,
+                           fmt::format("objective below which {} % of the samples lie", percent)));
+  bands.push_back(scalar("missing", "1", "samples without an objective"));
+  bands_ = {name, "bands", "value", bands, {{"samples", std::to_string(plan.sweep.lines())}}};
 }
 
 void DamperCurveTables::add_response(const std::optional<Peak>& top, const integrate::SteadyResponse& response,
@@ -189,10 +188,14 @@ void DamperCurveTables::add(std::span<const double> line, double parameter, cons
   rows.push_back(static_cast<double>(status));
 }
 
-void DamperCurveTables::add_limit(std::span<const double> line, double parameter, bool is_stuck, const Peak& peak,
-                                  std::vector<double>& rows) const {
+void DamperCurveTables::add_limits(std::span<const double> line, double parameter, const std::optional<Peak>& free,
+                                   const std::optional<Peak>& stuck, std::vector<double>& rows) const {
   append(line, rows);
-  rows.insert(rows.end(), {parameter, is_stuck ? 1.0 : 0.0, peak.at, peak.value, static_cast<double>(peak.curve)});
+  rows.push_back(parameter);
+  for (const auto* peak : {&free, &stuck}) {
+    rows.push_back(*peak ? (*peak)->at : nothing);
+    rows.push_back(*peak ? (*peak)->value : nothing);
+  }
 }
 
 void DamperCurveTables::add_peak(std::span<const double> line, double parameter, long number, const Peak& peak,

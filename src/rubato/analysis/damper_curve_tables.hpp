@@ -34,8 +34,8 @@ class DamperCurveTables {
   /// Appends the row of a value of the parameter. `top`: its highest peak; nothing where there is none.
   void add(std::span<const double> line, double parameter, const std::optional<Peak>& top, std::size_t peaks,
            const integrate::SteadyResponse& response, PointStatus status, std::vector<double>& rows) const;
-  void add_limit(std::span<const double> line, double parameter, bool is_stuck, const Peak& peak,
-                 std::vector<double>& rows) const;
+  void add_limits(std::span<const double> line, double parameter, const std::optional<Peak>& free,
+                  const std::optional<Peak>& stuck, std::vector<double>& rows) const;
   void add_peak(std::span<const double> line, double parameter, long number, const Peak& peak,
                 std::vector<double>& rows) const;
   void add_optimum(std::span<const double> line, const Optimum& optimum, const integrate::SteadyResponse& response,

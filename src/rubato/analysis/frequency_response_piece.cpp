@@ -24,11 +24,10 @@ double SweepCounts::points() const {
 
 std::vector<double> PieceResult::packed() const {
   std::vector<double> values(counts.by_status.begin(), counts.by_status.end());
-  values.insert(values.end(),
-                {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
-                 counts.first_impossible, static_cast<double>(main.size()), static_cast<double>(linear.size()),
-                 static_cast<double>(waveforms.size()), static_cast<double>(held.size())});
-  for (const auto* rows : {&main, &linear, &waveforms, &held}) values.insert(values.end(), rows->begin(), rows->end());
+  values.insert(values.end(), {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
+                               counts.first_impossible, static_cast<double>(main.size()),
+                               static_cast<double>(linear.size()), static_cast<double>(waveforms.size())});
+  for (const auto* rows : {&main, &linear, &waveforms}) values.insert(values.end(), rows->begin(), rows->end());
   return values;
 }
 
@@ -41,9 +40,9 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const doubl
   for (double* value : {&result.counts.iterations, &result.counts.negative_loads, &result.counts.first_negative,
                         &result.counts.first_unbounded, &result.counts.first_impossible})
     *value = next();
-  std::array<std::size_t, 4> sizes{};
+  std::array<std::size_t, 3> sizes{};
   for (std::size_t& size : sizes) size = static_cast<std::size_t>(next());
-  const std::array<std::vector<double>*, 4> tables{&result.main, &result.linear, &result.waveforms, &result.held};
+  const std::array<std::vector<double>*, 3> tables{&result.main, &result.linear, &result.waveforms};
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(place);
     tables[i]->assign(begin, begin + static_cast<std::ptrdiff_t>(sizes[i]));
@@ -115,8 +114,7 @@ void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitatio
   }
   free_->solve(excitation, integrate::SteadyStart::unloaded, free_response_);
   stuck_->solve(excitation, integrate::SteadyStart::unloaded, stuck_response_);
-  tables_.linear.add(place, false, free_response_, result.linear);
-  tables_.linear.add(place, true, stuck_response_, result.held);
+  tables_.linear.add(place, free_response_, stuck_response_, result.linear);
 }
 
 void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
@@ -205,7 +203,6 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
     const PieceResult& part = lanes_[i].result;
     result.main.insert(result.main.end(), part.main.begin(), part.main.end());
     result.linear.insert(result.linear.end(), part.linear.begin(), part.linear.end());
-    result.linear.insert(result.linear.end(), part.held.begin(), part.held.end());
     result.counts.add(part.counts);
   }
   return true;
@@ -215,12 +212,8 @@ PieceResult PieceSolver::solve(const SweepPiece& piece) {
   PieceResult result;
   result.piece = piece;
   if (piece.lines > 1 && solve_lanes(piece, result)) return result;
-  for (int i = 0; i < piece.lines && result.is_whole; ++i) {
+  for (int i = 0; i < piece.lines && result.is_whole; ++i)
     solve_line({piece.first_line + i, 1, piece.first_step, piece.steps}, result);
-    if (piece.steps < plan_.steps.size()) continue;
-    result.linear.insert(result.linear.end(), result.held.begin(), result.held.end());
-    result.held.clear();
-  }
   return result;
 }
 

@@ -36,8 +36,6 @@ struct PieceResult {
   SweepPiece piece;
   bool is_whole = true;  ///< false: interrupted, and the rows are those of the points that were reached
   std::vector<double> main, linear, waveforms;
-  std::vector<double>
-      held;  ///< rows of `linear` that belong behind the end of the line, in a piece that is a part of it
   SweepCounts counts;
 
   /// As one list of numbers, and back, for the journal.

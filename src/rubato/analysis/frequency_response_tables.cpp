@@ -233,24 +233,28 @@ LinearTable::LinearTable(const std::string& name, const FrequencyResponsePlan& p
     : layout_{name, "linear", "point", {}, {{"type", "frequency_response_linear"}}}, is_linear_(plan.is_linear) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, is_linear_, blocks);
-  blocks.push_back({"limit", "", "without sliders, or with all of them stuck", "", {}, {"free", "stuck"}});
   blocks.push_back(angular_frequency());
   const auto labels = labels_of(plan.observed);
-  if (!labels.empty()) {
-    blocks.push_back({"amplitude", "m", "half peak to peak of the displacement", "coordinate", labels});
-    blocks.push_back({"phase", "rad", "phase of harmonic 1, A cos(omega t + phase)", "coordinate", labels});
+  for (const auto& [limit, description] :
+       {std::pair<std::string, std::string>{"free", "without sliders"}, {"stuck", "with all sliders stuck"}}) {
+    if (labels.empty()) continue;
+    blocks.push_back(
+        {limit + "_amplitude", "m", "half peak to peak of the displacement " + description, "coordinate", labels});
+    blocks.push_back({limit + "_phase", "rad", "phase of harmonic 1 " + description + ", A cos(omega t + phase)",
+                      "coordinate", labels});
   }
   width_ = layout_.row_width();
 }
 
-void LinearTable::add(const RowPlace& place, bool is_stuck, const integrate::SteadyResponse& limit,
-                      std::vector<double>& rows) const {
+void LinearTable::add(const RowPlace& place, const integrate::SteadyResponse& free,
+                      const integrate::SteadyResponse& stuck, std::vector<double>& rows) const {
   for (std::size_t i = 0; i < place.line.size(); ++i)
     if (is_linear_[i]) rows.push_back(place.line[i]);
-  rows.push_back(is_stuck ? 1.0 : 0.0);
   rows.push_back(place.angular_frequency);
-  append(limit.amplitude, rows);
-  for (Index i = 0; i < limit.harmonics.rows(); ++i) rows.push_back(phase_of(limit.harmonics(i, 0)));
+  for (const integrate::SteadyResponse* limit : {&free, &stuck}) {
+    append(limit->amplitude, rows);
+    for (Index i = 0; i < limit->harmonics.rows(); ++i) rows.push_back(phase_of(limit->harmonics(i, 0)));
+  }
 }
 
 WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
@@ -302,9 +306,10 @@ BandTable::BandTable(const std::string& name, const FrequencyResponsePlan& plan)
   if (plan.has_both_directions) blocks.push_back(direction());
   blocks.push_back(angular_frequency());
   const auto labels = labels_of(plan.observed);
-  blocks.push_back(scalar("percentile", "1", "how many percent of the samples lie below"));
-  if (!labels.empty())
-    blocks.push_back({"amplitude", "m", "amplitude below which so many samples lie", "coordinate", labels});
+  for (const int percent : band_percents)
+    if (!labels.empty())
+      blocks.push_back({fmt::format("amplitude_p{:02}", percent), "m",
+                        fmt::format("amplitude below which {} % of the samples lie", percent), "coordinate", labels});
   blocks.push_back(scalar("missing", "1", "samples without an amplitude here"));
 }
 
@@ -323,15 +328,13 @@ void BandTable::write(results::RowWriter& writer) {
   const std::size_t width = plan_.observed.size();
   std::vector<double> row;
   for (std::size_t step = 0; step < plan_.steps.size(); ++step) {
-    for (const int percent : band_percents) {
-      row.clear();
-      if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
-      row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
-      row.push_back(percent);
+    row.clear();
+    if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
+    row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
+    for (const int percent : band_percents)
       for (std::size_t i = 0; i < width; ++i) row.push_back(percentile(values_[step * width + i], percent / 100.0));
-      row.push_back(missing_[step]);
-      writer.append(row);
-    }
+    row.push_back(missing_[step]);
+    writer.append(row);
   }
 }
 

@@ -61,7 +61,7 @@ class LinearTable {
   LinearTable(const std::string& name, const FrequencyResponsePlan& plan);
   const results::TableLayout& layout() const { return layout_; }
   std::size_t width() const { return width_; }
-  void add(const RowPlace& place, bool is_stuck, const integrate::SteadyResponse& limit,
+  void add(const RowPlace& place, const integrate::SteadyResponse& free, const integrate::SteadyResponse& stuck,
            std::vector<double>& rows) const;
 
  private:
