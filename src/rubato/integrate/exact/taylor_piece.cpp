@@ -226,6 +226,15 @@ void TaylorPiece::horner(double s, double* q_out, double* v_out) const {
   }
 }
 
+double TaylorPiece::displacement_scale(Index slider) const {
+  const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
+  double scale = 0.0, power = 1.0;
+  for (Index k = 0; k <= degree; ++k, power *= length_)
+    for (const Index row : {element.first, element.second})
+      if (row != ground) scale = std::max(scale, std::abs(q_(row, k)) * power);
+  return scale;
+}
+
 void TaylorPiece::evaluate(double s, Vector& q, Vector& v) const {
   with_size(n_, [&](auto size) { horner<decltype(size)::value>(s, q.data(), v.data()); });
 }

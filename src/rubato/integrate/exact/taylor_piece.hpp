@@ -50,6 +50,9 @@ class TaylorPiece {
   const Matrix& velocities() const { return v_; }
   /// Coefficients of u = x_first - x_second of a slider.
   const double* relative_displacement(Index slider) const { return u_.col(slider).data(); }
+  /// The largest term over max_length() of the displacements that u is the difference of: u is known to round-off of it
+  /// [m].
+  double displacement_scale(Index slider) const;
   /// The part of a slider's force that does not move with u: fc = kT u + offset while it sticks, fc = offset otherwise.
   double offset(Index slider) const { return offset_[slider]; }
 

@@ -187,18 +187,17 @@ void PeriodicSolver::march_from_rest(const Excitation& excitation) {
                                              system_.relative_displacement(i, y_.head(n_));
 }
 
+void PeriodicSolver::guess(const Excitation& excitation) {
+  if (equivalent_linear_state(system_, excitation, start_.q, start_.v, start_.slider_force))
+    y_ << start_.q, start_.v, start_.slider_force;
+  else
+    y_.setZero();
+}
+
 // Extrapolates the points before in the frequency, or guesses.
 void PeriodicSolver::predict(const Excitation& excitation) {
   const double w = excitation.angular_frequency;
-  if (known_.empty()) {
-    if (!equivalent_linear_state(system_, excitation, start_.q, start_.v, start_.slider_force)) {
-      start_.q.setZero(n_);
-      start_.v.setZero(n_);
-      start_.slider_force.setZero(m_);
-    }
-    y_ << start_.q, start_.v, start_.slider_force;
-    return;
-  }
+  if (known_.empty()) return guess(excitation);
   Vector y = known_[0].y;
   if (known_.size() > 1) {
     const double step = w - known_[0].angular_frequency;
@@ -271,7 +270,7 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   take_start(excitation, start);
 
   response.status = SteadyStatus::not_converged;
-  const bool converged = iterate(excitation, response);
+  const bool converged = iterate(excitation, response) || iterate_from_elsewhere(excitation, response);
   if (response.status == SteadyStatus::unbounded) {
     report_unbounded(response);
     known_.clear();
@@ -300,19 +299,43 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     known_.clear();
 }
 
+// Where the points before led nowhere: from a guess that knows nothing of them, then from where nothing moves. The best
+// that all found is left in y_ and the orbit.
+bool PeriodicSolver::iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response) {
+  Vector best = y_;
+  double least = response.residual;
+  for (const bool from_guess : {true, false}) {
+    if (response.status == SteadyStatus::unbounded) return false;
+    if (from_guess && known_.empty()) continue;
+    if (from_guess)
+      guess(excitation);
+    else
+      y_.setZero();
+    if (iterate(excitation, response)) return true;
+    if (response.residual < least) {
+      least = response.residual;
+      best = y_;
+    }
+  }
+  y_ = best;
+  response.residual = pass(excitation) ? residual(excitation) : infinity;
+  return false;
+}
+
 // Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
 // the flow itself is followed then.
 bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
   double best = infinity;
   int halvings = 0, periods = 0, stretch = 4;
+  const int first = response.iterations;
   bool may_move = true, moving = false;
   Vector settled;  // an orbit whose offsets are being moved
-  while (response.iterations < options_.most_iterations) {
+  while (response.iterations < first + options_.most_iterations) {
     ++response.iterations;
     double& last = response.residual;
     last = pass(excitation) ? residual(excitation) : infinity;
     if (last <= options_.tolerance) {
-      if (!may_move || response.iterations > most_moves || !must_move_offsets(excitation)) return true;
+      if (!may_move || response.iterations > first + most_moves || !must_move_offsets(excitation)) return true;
       settled = y_;
       moving = true;
       best = infinity;

@@ -13,8 +13,8 @@ namespace rubato::integrate {
 
 struct PeriodicOptions {
   double tolerance = 1e-12;   ///< of the residual: |y(T) - y(0)| over |y(0)|, see PeriodicSolver
-  int most_iterations = 200;  ///< of Newton
-  int most_periods = 4000;    ///< marched where Newton alone does not come nearer
+  int most_iterations = 200;  ///< of Newton, from each start that is tried
+  int most_periods = 4000;    ///< marched where Newton alone does not come nearer, likewise
 };
 
 /// The periodic orbit itself, by shooting: Newton's method on
@@ -23,8 +23,9 @@ struct PeriodicOptions {
 ///
 /// with P the exact flow over a period and its exact derivative (ExactFlow, FlowDerivative); over half a period, with
 /// P(y) + y = 0, where loads and start are half-wave symmetric. Points continue from those before by extrapolation in
-/// the frequency; the first starts from one harmonic with equivalent stiffness and damping of the sliders. Where Newton
-/// does not come nearer, the flow itself is followed for some periods: with damping it always does.
+/// the frequency; the first starts from one harmonic with equivalent stiffness and damping of the sliders, and so does
+/// a point to which those before do not lead. Where Newton does not come nearer, the flow itself is followed for some
+/// periods: with damping it always does.
 ///
 /// A slider that never slips leaves its offset fc - kT u free: it is the one that SteadyStart asks for, or the nearest
 /// with which it does not slip.
@@ -50,6 +51,7 @@ class PeriodicSolver final : public SteadySolver {
     Vector y;
   };
   void take_start(const Excitation& excitation, SteadyStart start);
+  void guess(const Excitation& excitation);
   void predict(const Excitation& excitation);
   void march_from_rest(const Excitation& excitation);
   bool march(const Excitation& excitation, int periods);
@@ -57,6 +59,7 @@ class PeriodicSolver final : public SteadySolver {
   double residual(const Excitation& excitation);
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
+  bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
   double force_by_offset(Index slider);
   bool must_move_offsets(const Excitation& excitation);
   double size_of(const Excitation& excitation, const Vector& y) const;
