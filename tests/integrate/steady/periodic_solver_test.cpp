@@ -136,7 +136,7 @@ TEST(PeriodicSolver, KeepsTheOffsetOfASliderThatNeverSlips) {
   solver.solve(excitation, SteadyStart::previous, second);
   EXPECT_NEAR(second.offset[0], first.offset[0], 1e-12);
   solver.solve(excitation, SteadyStart::unloaded, second);
-  EXPECT_EQ(second.offset[0], 0.0);
+  EXPECT_NEAR(second.offset[0], 0.0, 1e-15);  // the round-off of kT u and fc
 }
 
 // Amplitude and phase of a wave, from its samples: they lie on the orbit.

@@ -87,13 +87,13 @@ void ExactFlow::decide_states(system::State& state, double table_end) {
 
 SliderState ExactFlow::state_at_limit(Index i, double force) {
   const auto k = static_cast<std::size_t>(i);
-  const double* u = piece_.relative_displacement(i);
+  const auto u = piece_.relative_displacement(i);
   const double tau = piece_.max_length(), negligible = at_rest * piece_.displacement_scale(i);
   double power = tau;
   int& order = first_order_[k];
   for (order = 1; order <= most_order; ++order, power *= tau)
-    if (std::abs(u[order]) * power > negligible) break;
-  if (order > most_order || !(u[order] * force > 0.0)) return SliderState::stick;
+    if (std::abs(u[static_cast<std::size_t>(order)]) * power > negligible) break;
+  if (order > most_order || !(u[static_cast<std::size_t>(order)] * force > 0.0)) return SliderState::stick;
   return force > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
 }
 
@@ -102,24 +102,24 @@ double ExactFlow::next_event(double length, Index& slider) {
   for (Index i = 0; i < static_cast<Index>(states_.size()); ++i) {
     if (is_idle(i)) continue;
     const auto& element = system_.sliders()[static_cast<std::size_t>(i)];
-    const double limit = piece_.limit(i);
-    const double* u = piece_.relative_displacement(i);
+    const double reach = first < 0.0 ? length : first;
+    const auto u = piece_.relative_displacement(i);
     const SliderState state = states_[static_cast<std::size_t>(i)];
     // What was round-off when the state was decided is none of a motion beyond the edge now.
     const auto order = static_cast<std::size_t>(first_order_[static_cast<std::size_t>(i)]);
-    const double reach = first < 0.0 ? length : first;
     double s = -1.0;
-    if (state == SliderState::stick) {  // its force reaches a limit
-      for (std::size_t k = 0; k < path_.size(); ++k) path_[k] = element.stiffness * u[k];
-      path_[0] += piece_.offset(i);
-      if (order > 0) path_[0] = std::copysign(limit, path_[0]);
+    if (state == SliderState::stick) {  // its force, in units of its spring, reaches a limit
+      const double slip = piece_.limit(i) / element.stiffness;
+      std::copy(u.begin(), u.end(), path_.begin());
+      path_[0] = order > 0 ? std::copysign(slip, piece_.offset(i) + element.stiffness * u[0])
+                           : u[0] + piece_.offset(i) / element.stiffness;
       for (std::size_t k = 1; k < order; ++k) path_[k] = 0.0;
-      s = first_exit(path_, -limit, limit, reach);
+      s = first_exit({path_.data(), u.size()}, -slip, slip, reach);
     } else {  // its slip comes to rest
-      path_.back() = 0.0;
-      for (std::size_t k = 0; k + 1 < path_.size(); ++k) path_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
+      const double outward = sign(state);
+      for (std::size_t k = 0; k + 1 < u.size(); ++k) path_[k] = outward * static_cast<double>(k + 1) * u[k + 1];
       for (std::size_t k = 1; k < order; ++k) path_[k - 1] = 0.0;
-      s = first_exit(path_, 0.0, HUGE_VAL, reach);
+      s = first_exit({path_.data(), u.size() - 1}, 0.0, HUGE_VAL, reach);
     }
     if (s < 0.0 || (first >= 0.0 && s >= first)) continue;
     first = s;
@@ -137,8 +137,13 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   std::size_t next_break = 0, next_sample = 0;
   long without_time = 0;
   now_ = state;
-  // Where forces stand tells the states; the first decision sees all sliders.
-  for (std::size_t k = 0; k < states_.size(); ++k) states_[k] = SliderState::stick;
+  // Where forces and rates stand tells the likeliest states; the first decision sees all sliders.
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const auto i = static_cast<Index>(k);
+    const double force = state.slider_force[i];
+    const bool slips = std::abs(force) >= piece_.limit(i) && force * system_.relative_displacement(i, state.v) > 0.0;
+    states_[k] = !slips ? SliderState::stick : force > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
+  }
   const auto table_end = [&] { return next_break < breaks.size() ? breaks[next_break] : t_end; };
   decide_states(state, table_end());
 
@@ -148,7 +153,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     piece_.add_work(from, to, work.damper, work.load);
     for (std::size_t k = 0; k < states_.size(); ++k) {
       if (states_[k] == SliderState::stick) continue;
-      const std::span<const double> u(piece_.relative_displacement(static_cast<Index>(k)), TaylorPiece::degree + 1);
+      const auto u = piece_.relative_displacement(static_cast<Index>(k));
       work.slider += sign(states_[k]) * piece_.limit(static_cast<Index>(k)) * (polynomial(u, to) - polynomial(u, from));
     }
   };
@@ -187,6 +192,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     }
     if (next_break < breaks.size() && state.t >= breaks[next_break]) ++next_break;
     if (event < 0.0) {
+      if (state.t >= t_end && next_sample >= samples.size()) break;
       piece_.start(state, states_, table_end());
       std::fill(first_order_.begin(), first_order_.end(), 0);
       if (state.t >= t_end) continue;

@@ -3,6 +3,7 @@
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
+#include <span>
 #include <vector>
 
 namespace rubato::integrate {
@@ -30,10 +31,12 @@ class Orbit {
   struct Piece {
     double start = 0.0, length = 0.0;  // [s]
     Index terms = 0;                   // of the polynomials that matter over the length
-    Matrix q, u;                       // coefficients [n x terms], [terms x m]
+    Matrix q;                          // coefficients, the first `terms` columns [n x degree + 1]
     Vector offset, limit;              // of the slider forces [m] [N]
     std::vector<SliderState> states;
   };
+  /// Coefficients of x_first - x_second in a piece, in `storage`.
+  std::span<double> difference(const Piece& piece, Index first, Index second, std::span<double> storage) const;
   void measure_ranges(const SteadyRequest& request, bool half, SteadyResponse& response) const;
   void measure_integrals(const Excitation& excitation, const SteadyRequest& request, bool half,
                          SteadyResponse& response) const;
