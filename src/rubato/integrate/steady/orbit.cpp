@@ -63,6 +63,10 @@ bool Orbit::slips(Index slider) const {
   });
 }
 
+void Orbit::carry(FlowDerivative& derivative) const {
+  for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].states);
+}
+
 std::span<double> Orbit::difference(const Piece& piece, Index first, Index second, std::span<double> storage) const {
   const Index n = piece.q.rows();
   const double *a = first == ground ? nullptr : piece.q.data() + first,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/exact/flow_derivative.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
@@ -17,6 +18,8 @@ class Orbit {
   void clear() { count_ = 0; }
   void add(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states);
   bool slips(Index slider) const;
+  /// Carries the derivative of the flow along what is stored.
+  void carry(FlowDerivative& derivative) const;
 
   /// Smallest and largest u = x_first - x_second of a slider over what is stored [m].
   void displacement_range(Index slider, double& low, double& high) const;

@@ -48,7 +48,8 @@ class PeriodicSolver final : public SteadySolver {
   class Recorder;
   struct Known {
     double angular_frequency = 0.0;
-    Vector y;
+    long serial = 0;
+    Vector limits, y;
   };
   void take_start(const Excitation& excitation, SteadyStart start);
   void guess(const Excitation& excitation);
@@ -57,6 +58,7 @@ class PeriodicSolver final : public SteadySolver {
   bool march(const Excitation& excitation, int periods);
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
+  void factorise();
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
   bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
@@ -66,6 +68,8 @@ class PeriodicSolver final : public SteadySolver {
   double observed_size(const Vector& y) const;
   void put(const Vector& y, const Excitation& excitation);
   void remember(const Excitation& excitation);
+  void forget_others(const Excitation& excitation);
+  double scaled_size(const Vector& y, double omega) const;
   void report_unbounded(SteadyResponse& response) const;
 
   const system::LocallyNonlinear& system_;
@@ -77,11 +81,16 @@ class PeriodicSolver final : public SteadySolver {
   Orbit orbit_;
   system::State start_, end_;                  // of a pass
   Vector y_, difference_, correction_, best_;  // (q, v, fc) at the start; P(y) - y; Newton's step from best_
+  Vector right_side_;
   Vector wanted_offset_, offset_shift_, offset_probe_,
       centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
   Eigen::PartialPivLU<Matrix> factors_;
-  std::vector<Known> known_;  // the last three points, the newest first
+  bool factors_are_of_orbit_ = false;
+  bool near_factors_ = false;        // the last pass was made after a full step with these factors
+  std::vector<Known> known_;         // points before, from which the next is extrapolated
+  std::vector<Vector> differences_;  // divided differences of theirs
+  long serial_ = 0;
   bool half_ = false;
   Excitation last_;
 };
