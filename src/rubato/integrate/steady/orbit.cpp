@@ -44,15 +44,14 @@ void Orbit::add(const TaylorPiece& piece, double start, double length, const std
   Piece& kept = pieces_[count_++];
   kept.start = start;
   kept.length = length;
-  kept.terms = terms_of(TaylorPiece::reach * std::min(length / piece.max_length(), 1.0));
+  kept.terms = std::min(piece.terms(), terms_of(TaylorPiece::reach * std::min(length / piece.max_length(), 1.0)));
   kept.states = states;
   const Index m = system_.slider_count();
-  kept.q = piece.displacements().leftCols(kept.terms);
-  kept.u.resize(kept.terms, m);
+  kept.q.resize(system_.size(), TaylorPiece::degree + 1);
+  kept.q.leftCols(kept.terms) = piece.displacements().leftCols(kept.terms);
   kept.offset.resize(m);
   kept.limit.resize(m);
   for (Index i = 0; i < m; ++i) {
-    kept.u.col(i) = Eigen::Map<const Vector>(piece.relative_displacement(i), kept.terms);
     kept.offset[i] = piece.offset(i);
     kept.limit[i] = piece.limit(i);
   }
@@ -64,11 +63,26 @@ bool Orbit::slips(Index slider) const {
   });
 }
 
+void Orbit::carry(FlowDerivative& derivative) const {
+  for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].states);
+}
+
+std::span<double> Orbit::difference(const Piece& piece, Index first, Index second, std::span<double> storage) const {
+  const Index n = piece.q.rows();
+  const double *a = first == ground ? nullptr : piece.q.data() + first,
+               *b = second == ground ? nullptr : piece.q.data() + second;
+  const auto terms = static_cast<std::size_t>(piece.terms);
+  for (std::size_t k = 0; k < terms; ++k, a += a ? n : 0, b += b ? n : 0) storage[k] = (a ? *a : 0.0) - (b ? *b : 0.0);
+  return storage.first(terms);
+}
+
 void Orbit::displacement_range(Index slider, double& low, double& high) const {
   Range range;
+  const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (std::size_t i = 0; i < count_; ++i)
-    include_range({pieces_[i].u.col(slider).data(), static_cast<std::size_t>(pieces_[i].terms)}, pieces_[i].length,
-                  range.low, range.high);
+    include_range(difference(pieces_[i], element.first, element.second, storage), pieces_[i].length, range.low,
+                  range.high);
   low = range.low;
   high = range.high;
 }
@@ -91,10 +105,7 @@ void Orbit::measure_ranges(const SteadyRequest& request, bool half, SteadyRespon
     Range position, velocity, acceleration;
     for (std::size_t i = 0; i < count_; ++i) {
       const Piece& piece = pieces_[i];
-      std::span<double> c(storage.data(), static_cast<std::size_t>(piece.terms));
-      for (Index k = 0; k < piece.terms; ++k)
-        c[static_cast<std::size_t>(k)] =
-            piece.q(what.first, k) - (what.second == ground ? 0.0 : piece.q(what.second, k));
+      const auto c = difference(piece, what.first, what.second, storage);
       include_range(c, piece.length, position.low, position.high);
       if (!request.rates) continue;
       const auto rate = differentiate(c);
@@ -206,8 +217,10 @@ void Orbit::measure_sliders(double period, bool half, SteadyResponse& response) 
   response.slip_share = Vector::Zero(m);
   response.offset = Vector::Zero(m);
   response.transitions = 0;
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (Index i = 0; i < m; ++i) {
     const auto k = static_cast<std::size_t>(i);
+    const auto& slider = system_.sliders()[k];
     for (std::size_t p = 0; p < count_; ++p) {
       const Piece& piece = pieces_[p];
       const SliderState state = piece.states[k];
@@ -216,7 +229,7 @@ void Orbit::measure_sliders(double period, bool half, SteadyResponse& response) 
       const auto sign_before = static_cast<int>(before.states[k]) * (p == 0 && half ? -1 : 1);
       if (piece.limit[i] > 0.0 && sign_before != static_cast<int>(state)) response.transitions += half ? 2 : 1;
       if (state == SliderState::stick) continue;
-      const std::span<const double> u(piece.u.col(i).data(), static_cast<std::size_t>(piece.terms));
+      const auto u = difference(piece, slider.first, slider.second, storage);
       response.dissipated[i] += share * piece.limit[i] * std::abs(polynomial(u, piece.length) - u[0]);
       response.slip_share[i] += share * piece.length / period;
     }
@@ -230,6 +243,7 @@ Waveform Orbit::waveform(const Excitation& excitation, bool half, int points) co
                 Matrix::Zero(m, points)};
   if (count_ == 0) return wave;
   const double period = excitation.period();
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (int j = 0; j < points; ++j) {
     wave.time[j] = period * j / points;
     const bool mirrored = half && 2 * j >= points;
@@ -245,10 +259,10 @@ Waveform Orbit::waveform(const Excitation& excitation, bool half, int points) co
     wave.position.col(j) *= sign;
     wave.velocity.col(j) *= sign;
     for (Index i = 0; i < m; ++i) {
-      const double u = polynomial({piece.u.col(i).data(), static_cast<std::size_t>(piece.terms)}, s);
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      const double u = polynomial(difference(piece, slider.first, slider.second, storage), s);
       const bool sticks = piece.states[static_cast<std::size_t>(i)] == SliderState::stick;
-      const double force =
-          piece.offset[i] + (sticks ? system_.sliders()[static_cast<std::size_t>(i)].stiffness * u : 0.0);
+      const double force = piece.offset[i] + (sticks ? slider.stiffness * u : 0.0);
       wave.displacement(i, j) = sign * u;
       wave.slider_force(i, j) = sign * std::clamp(force, -piece.limit[i], piece.limit[i]);
     }

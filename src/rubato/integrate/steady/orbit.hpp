@@ -1,8 +1,10 @@
 #pragma once
 
+#include <rubato/integrate/exact/flow_derivative.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
+#include <span>
 #include <vector>
 
 namespace rubato::integrate {
@@ -16,6 +18,8 @@ class Orbit {
   void clear() { count_ = 0; }
   void add(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states);
   bool slips(Index slider) const;
+  /// Carries the derivative of the flow along what is stored.
+  void carry(FlowDerivative& derivative) const;
 
   /// Smallest and largest u = x_first - x_second of a slider over what is stored [m].
   void displacement_range(Index slider, double& low, double& high) const;
@@ -30,10 +34,12 @@ class Orbit {
   struct Piece {
     double start = 0.0, length = 0.0;  // [s]
     Index terms = 0;                   // of the polynomials that matter over the length
-    Matrix q, u;                       // coefficients [n x terms], [terms x m]
+    Matrix q;                          // coefficients, the first `terms` columns [n x degree + 1]
     Vector offset, limit;              // of the slider forces [m] [N]
     std::vector<SliderState> states;
   };
+  /// Coefficients of x_first - x_second in a piece, in `storage`.
+  std::span<double> difference(const Piece& piece, Index first, Index second, std::span<double> storage) const;
   void measure_ranges(const SteadyRequest& request, bool half, SteadyResponse& response) const;
   void measure_integrals(const Excitation& excitation, const SteadyRequest& request, bool half,
                          SteadyResponse& response) const;
