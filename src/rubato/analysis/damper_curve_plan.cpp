@@ -2,6 +2,7 @@
 #include <rubato/analysis/damper_curve_tables.hpp>
 #include <rubato/analysis/parametric_excitation.hpp>
 #include <rubato/analysis/steady_plan.hpp>
+#include <rubato/integrate/exact/exact_flow.hpp>
 
 #include <fmt/format.h>
 
@@ -155,6 +156,12 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
   plan_range(plan, description, input, title, where);
   plan_frequencies(plan, description, input, title, where);
   plan_objective(plan, description, input, title, where);
+  if (input.system.size() > integrate::largest_exact)
+    throw InvalidInput(
+        where,
+        fmt::format("{}damper curves are refined on exact periodic orbits, for up to {} coordinates; the model has "
+                    "{}: reduce it, or sweep a frequency_response with solver = \"harmonic_balance\" over \"{}\"",
+                    title, integrate::largest_exact, input.system.size(), plan.parameter));
   require_ends(plan, input);
   return plan;
 }

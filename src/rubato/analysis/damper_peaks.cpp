@@ -61,7 +61,9 @@ bool DamperPeaks::take(double parameter, bool begins_afresh) {
   try {
     require_structure(plan_.excitation_factor * plan_.from);
     drive_.take_line(values_, *structure_);
-    if (begins_afresh) solver_->forget();
+    if (begins_afresh)
+      for (const auto* solver : {&solver_, &free_, &stuck_})
+        if (*solver) (*solver)->forget();
     return true;
   } catch (const InvalidInput& fault) {
     ++scan_.by_status[static_cast<std::size_t>(PointStatus::impossible)];

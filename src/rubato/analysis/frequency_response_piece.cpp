@@ -97,6 +97,12 @@ void PieceSolver::require_structure(Lane& lane, double point) {
   structure_values_ = std::move(wanted);
 }
 
+/// What is solved next does not depend on what was solved before.
+void PieceSolver::forget() {
+  for (const auto* solver : {&solver_, &free_, &stuck_})
+    if (*solver) (*solver)->forget();
+}
+
 void PieceSolver::take_line(Lane& lane, long line) {
   plan_.sweep.values(line, lane.values);
   std::vector<bool> others = plan_.is_linear;
@@ -151,7 +157,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
     try {
       if (is_new_line || plan_.structure_follows_point) {
         require_structure(mine, point);
-        if (is_new_line) solver_->forget();
+        if (is_new_line) forget();
         mine.drive->take_line(mine.values, *structure_);
         is_new_line = false;
       }
@@ -180,7 +186,7 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
   }
   try {
     require_structure(lanes_[0], point_value(piece.first_step));
-    solver_->forget();
+    forget();
     for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_line(lanes_[i].values, *structure_);
     for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {
       if (stop_.load(std::memory_order_relaxed)) {

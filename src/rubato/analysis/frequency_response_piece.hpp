@@ -97,6 +97,7 @@ class PieceSolver {
 
   void solve_line(const SweepPiece& piece, PieceResult& result);
   bool solve_lanes(const SweepPiece& piece, PieceResult& result);
+  void forget();
   void take_line(Lane& lane, long line);
   Lane& take_point(long line, std::size_t step);
   void solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result);

@@ -162,6 +162,9 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
       at.take_line(values, structure);
       at.take_point(point, excitation);
       if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
+      if (!excitation.harmonics.empty())
+        plan.route.linear.highest =
+            std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
     }
   }
 }
@@ -191,6 +194,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   plan_request(plan, description, input, title, where);
   plan_waveforms(plan, description, input, title, where);
   require_ends(plan, input);
+  plan.route.linear.points = static_cast<Index>(plan.frequencies.size());
   return plan;
 }
 

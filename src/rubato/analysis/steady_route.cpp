@@ -10,10 +10,10 @@ namespace {
 using integrate::SteadyRequest;
 using system::LocallyNonlinear;
 
-std::unique_ptr<integrate::SteadySolver> linear(const LocallyNonlinear& system, const SteadyRequest& request,
-                                                bool stuck) {
+std::unique_ptr<integrate::SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                const SteadyRequest& request, bool stuck) {
   return std::make_unique<integrate::LinearResponse>(
-      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request);
+      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request, route.linear);
 }
 
 std::unique_ptr<integrate::SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,
@@ -49,16 +49,16 @@ std::string route_name(SteadyRoute::Kind kind) {
 
 SteadySolvers steady_solvers(const SteadyRoute& route) {
   SteadySolvers solvers;
-  solvers.free = [](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return linear(system, request, false);
+  solvers.free = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, false);
   };
-  solvers.stuck = [](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return linear(system, request, true);
+  solvers.stuck = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, true);
   };
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
     if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);
-    if (system.slider_count() == 0) return linear(system, request, false);
+    if (system.slider_count() == 0) return linear(route, system, request, false);
     return route.kind == SteadyRoute::Kind::periodic ? periodic(route, system, request)
                                                      : harmonic_balance(route, system, request);
   };

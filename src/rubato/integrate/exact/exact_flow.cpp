@@ -10,20 +10,19 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr Index largest_size = 300;  // dense products of every piece; beyond, a step method is faster by far
-constexpr double at_limit = 1e-13;   // relative distance of a force from its limit that is round-off of the location
-constexpr double at_rest = 1e-14;    // likewise of a term of u against the largest of the displacements it is made of
-constexpr int most_order = 6;        // of the terms of u that are looked at
+constexpr double at_limit = 1e-13;  // relative distance of a force from its limit that is round-off of the location
+constexpr double at_rest = 1e-14;   // likewise of a term of u against the largest of the displacements it is made of
+constexpr int most_order = 6;       // of the terms of u that are looked at
 constexpr long most_without_time = 200;
 
 int sign(SliderState state) { return static_cast<int>(state); }
 
 void require_possible(const system::LocallyNonlinear& system) {
-  if (system.size() > largest_size)
+  if (system.size() > largest_exact)
     throw InvalidInput(
         fmt::format("the method exact is for up to {} coordinates, the model has {}; take "
                     "\"generalized_alpha\" with a small step",
-                    largest_size, system.size()));
+                    largest_exact, system.size()));
   for (const auto& term : system.loads().terms())
     if (const auto* formula = std::get_if<model::FormulaLaw>(&term.law))
       throw InvalidInput(

@@ -7,6 +7,9 @@
 
 namespace rubato::integrate {
 
+/// Coordinates that the exact flow takes: every piece costs dense products, and beyond other ways are faster by far.
+inline constexpr Index largest_exact = 300;
+
 /// A slider that changes its state.
 struct Transition {
   double t = 0.0;  ///< [s]

@@ -1,6 +1,10 @@
 #include <rubato/integrate/steady/equivalent_linear.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
+#include <rubato/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,8 +43,21 @@ class PeriodicSolver::Recorder final : public ExactVisitor {
   Orbit& orbit_;
 };
 
+namespace {
+
+const system::LocallyNonlinear& checked(const system::LocallyNonlinear& system) {
+  if (system.size() > largest_exact)
+    throw InvalidInput(
+        fmt::format("solver = \"periodic\" is for up to {} coordinates, the model has {}; take solver = "
+                    "\"harmonic_balance\", whose cost grows with the sliders alone",
+                    largest_exact, system.size()));
+  return system;
+}
+
+}  // namespace
+
 PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyRequest request, PeriodicOptions options)
-    : system_(system),
+    : system_(checked(system)),
       request_(std::move(request)),
       options_(options),
       n_(system.size()),
@@ -404,9 +421,7 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
         near_factors_ = true;
         if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
       }
-      std::vector<bool> sticks(static_cast<std::size_t>(m_));
-      for (Index i = 0; i < m_; ++i) sticks[static_cast<std::size_t>(i)] = !orbit_.slips(i);
-      if (is_at_undamped_resonance(system_, excitation, sticks)) {
+      if (is_driven_beyond_friction(system_, excitation)) {
         response.status = SteadyStatus::unbounded;
         return false;
       }
