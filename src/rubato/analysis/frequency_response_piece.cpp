@@ -1,8 +1,16 @@
 #include <rubato/analysis/frequency_response_piece.hpp>
 
+#include <rubato/integrate/steady/quasi_periodic.hpp>
+
 #include <algorithm>
+#include <limits>
 
 namespace rubato::analysis {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 void SweepCounts::add(const SweepCounts& other) {
   for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i] += other.by_status[i];
@@ -60,6 +68,7 @@ PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
     Lane lane;
     lane.drive =
         std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
+    if (plan_.route.kind == SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
     lane.values.resize(plan_.sweep.names().size());
     lanes_.push_back(std::move(lane));
   }
@@ -123,6 +132,15 @@ void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitatio
   tables_.linear.add(place, free_response_, stuck_response_, result.linear);
 }
 
+/// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
+void PieceSolver::march_without_period(Lane& lane, double point, integrate::SteadyResponse& response) {
+  const ParametricStructure here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
+  response =
+      integrate::solve_quasi_periodic(here.system, marching_options(plan_.route), plan_.request, lane.drive->window());
+  response.harmonics.setConstant(static_cast<Index>(plan_.observed.size()),
+                                 static_cast<Index>(plan_.request.harmonics.size()), nothing);
+}
+
 void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
                                const integrate::SteadyResponse& response, PieceResult& result) {
   const RowPlace place = place_of(lane, step);
@@ -138,7 +156,8 @@ void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, co
     if (counts.first_negative < 0.0) counts.first_negative = point_number(line, step);
   }
   // Both directions have the same limits.
-  if (lane.has_limits && step < plan_.frequencies.size()) solve_linear(place, excitation, result);
+  if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
+    solve_linear(place, excitation, result);
   progress_.add(1);
 }
 
@@ -162,7 +181,10 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
         is_new_line = false;
       }
       mine.drive->take_point(point, excitation);
-      solver_->solve(excitation, plan_.start, response);
+      if (mine.drive->has_period())
+        solver_->solve(excitation, plan_.start, response);
+      else
+        march_without_period(mine, point, response);
     } catch (const InvalidInput&) {
       tables_.main.add_impossible(place_of(mine, step), result.main);
       result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
@@ -193,7 +215,10 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
         result.is_whole = false;
         break;
       }
-      for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_point(point_value(step), excitations_[i]);
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes_[i].drive->take_point(point_value(step), excitations_[i]);
+        if (!lanes_[i].drive->has_period()) throw InvalidInput("points without a period are marched one by one");
+      }
       solver_->solve_lanes({excitations_.data(), count}, plan_.start, {responses_.data(), count});
       for (std::size_t i = 0; i < count; ++i)
         finish_point(lanes_[i], piece.first_line + static_cast<long>(i), step, excitations_[i], responses_[i],

@@ -100,6 +100,7 @@ class PieceSolver {
   void forget();
   void take_line(Lane& lane, long line);
   Lane& take_point(long line, std::size_t step);
+  void march_without_period(Lane& lane, double point, integrate::SteadyResponse& response);
   void solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result);
   void require_structure(Lane& lane, double point);
   void finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,

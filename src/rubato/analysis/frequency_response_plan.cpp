@@ -69,6 +69,11 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
     throw InvalidInput(place(description.start_where, where),
                        fmt::format("{}start = \"previous\" needs a structure that stays; here it changes with \"{}\"",
                                    title, input.parameters[plan.excitation].first));
+  if (description.start == Start::rest && description.route == Description::Route::harmonic_balance)
+    throw InvalidInput(place(description.start_where, where),
+                       title +
+                           "start = \"rest\" is what a march from the start ends with, which harmonic balance does not "
+                           "know; take another solver, or start = \"unloaded\"");
   if (description.direction != Direction::up && description.start != Start::previous)
     throw InvalidInput(place(description.direction_where, where),
                        title +
@@ -152,6 +157,7 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
 /// The first and the last point can be made; what lies between is judged as it is reached.
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
+  if (plan.route.kind == SteadyRoute::Kind::time_marching) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
   for (const long line : {0L, plan.sweep.lines() - 1}) {
     plan.sweep.values(line, values);
@@ -162,7 +168,7 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
       at.take_line(values, structure);
       at.take_point(point, excitation);
       if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
-      if (!excitation.harmonics.empty())
+      if (at.has_period() && !excitation.harmonics.empty())
         plan.route.linear.highest =
             std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
     }

@@ -2,7 +2,6 @@
 #include <rubato/integrate/steady/harmonic_balance.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
-#include <rubato/integrate/steady/time_marching.hpp>
 
 namespace rubato::analysis {
 namespace {
@@ -32,15 +31,19 @@ std::unique_ptr<integrate::SteadySolver> harmonic_balance(const SteadyRoute& rou
 
 std::unique_ptr<integrate::SteadySolver> time_marching(const SteadyRoute& route, const LocallyNonlinear& system,
                                                        const SteadyRequest& request) {
+  return std::make_unique<integrate::TimeMarchingSolver>(system, marching_options(route), request);
+}
+
+}  // namespace
+
+integrate::TimeMarchingOptions marching_options(const SteadyRoute& route) {
   integrate::TimeMarchingOptions options;
   options.method = route.method;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
   if (route.steps_per_period > 0) options.steps_per_period = static_cast<int>(route.steps_per_period);
   if (route.max_periods > 0) options.max_periods = static_cast<int>(route.max_periods);
-  return std::make_unique<integrate::TimeMarchingSolver>(system, options, request);
+  return options;
 }
-
-}  // namespace
 
 std::string route_name(SteadyRoute::Kind kind) {
   if (kind == SteadyRoute::Kind::harmonic_balance) return "harmonic_balance";

@@ -3,6 +3,7 @@
 #include <rubato/integrate/method.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/integrate/steady/time_marching.hpp>
 #include <rubato/model/description.hpp>
 
 #include <functional>
@@ -25,6 +26,9 @@ struct SteadyRoute {
 
 /// As the study file calls it.
 std::string route_name(SteadyRoute::Kind kind);
+
+/// The options of time marching.
+integrate::TimeMarchingOptions marching_options(const SteadyRoute& route);
 
 /// Makes solvers of steady responses for one structure after another.
 struct SteadySolvers {

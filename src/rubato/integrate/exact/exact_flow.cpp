@@ -13,6 +13,7 @@ namespace {
 constexpr double at_limit = 1e-13;  // relative distance of a force from its limit that is round-off of the location
 constexpr double at_rest = 1e-14;   // likewise of a term of u against the largest of the displacements it is made of
 constexpr int most_order = 6;       // of the terms of u that are looked at
+constexpr double no_time = 1e-10;    // of a piece: events that are as near happen at once
 constexpr long most_without_time = 200;
 
 int sign(SliderState state) { return static_cast<int>(state); }
@@ -135,6 +136,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   if (own_loads_) breaks = system_.loads().breakpoints(state.t, t_end);
   std::size_t next_break = 0, next_sample = 0;
   long without_time = 0;
+  double progress = state.t;
   now_ = state;
   // Where forces and rates stand tells the likeliest states; the first decision sees all sliders.
   for (std::size_t k = 0; k < states_.size(); ++k) {
@@ -183,7 +185,13 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     visitor.piece(piece_, state.t, length, states_);
     now_.t = end;
     piece_.evaluate(length, now_);
-    without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
+    // Against what a piece may be long: near t = 0 any time is large beside t.
+    if (end > progress + no_time * piece_.max_length()) {
+      progress = end;
+      without_time = 0;
+    } else {
+      ++without_time;
+    }
     std::swap(state, now_);
     if (!std::isfinite(state.v.sum()) || !std::isfinite(state.q.sum())) {
       report.end = ExactEnd::not_finite;
