@@ -1,16 +1,10 @@
 #include <rubato/integrate/exact/first_exit.hpp>
+#include <rubato/integrate/exact/processor_clones.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-
-// Fused multiplications are off everywhere, so that all clones give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define RUBATO_CLONES __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define RUBATO_CLONES
-#endif
 
 namespace rubato::integrate {
 namespace {
@@ -44,13 +38,18 @@ struct Samples {
 };
 
 RUBATO_CLONES void sample(const double* c, std::size_t terms, double length, Samples& result) {
-  Samples::Lanes at, value{}, slope{};
+  Samples::Lanes at, even{}, odd{}, even_slope{}, odd_slope{};
   for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
-  for (std::size_t k = terms; k-- > 0;) {
-    slope = slope * at + value;
-    value = value * at + c[k];
+  const Samples::Lanes square = at * at;
+  std::size_t k = terms;
+  if (k % 2 == 1) even = c[--k] - even;
+  for (; k > 0; k -= 2) {
+    even_slope = even_slope * square + even;
+    odd_slope = odd_slope * square + odd;
+    even = even * square + c[k - 2];
+    odd = odd * square + c[k - 1];
   }
-  result = {at, value, slope};
+  result = {at, even + at * odd, odd + 2.0 * at * (even_slope + at * odd_slope)};
 }
 
 // Where the cubic with the values and slopes of both ends vanishes, nearly: three steps of Newton from the secant.
@@ -141,19 +140,22 @@ double polynomial(std::span<const double> c, double s) {
 
 double first_exit(std::span<const double> c, double lower, double upper, double length) {
   assert(!c.empty() && c.size() <= most_terms);
-  // How far the terms can carry it at most; and from where on they are below round-off.
-  std::array<double, most_terms> size;
-  double fall = 0.0, rise = 0.0, largest = std::abs(c[0]), power = length;
-  for (std::size_t k = 1; k < c.size(); ++k, power *= length) {
-    const double term = c[k] * power;
-    fall += std::min(term, 0.0);
-    rise += std::max(term, 0.0);
+  // How far the terms can carry it at most, even and odd ones apart; and from where on they are below round-off.
+  std::array<double, most_terms + 1> size;
+  std::array<double, 2> fall{}, rise{}, power{length, length * length};
+  const double square = power[1];
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    const std::size_t parity = k % 2 == 0;
+    const double term = c[k] * power[parity];
+    fall[parity] += std::min(term, 0.0);
+    rise[parity] += std::max(term, 0.0);
     size[k] = std::abs(term);
-    largest = std::max(largest, size[k]);
+    power[parity] *= square;
   }
-  if (c[0] + fall > lower && c[0] + rise < upper) return -1.0;
+  if (c[0] + (fall[0] + fall[1]) > lower && c[0] + (rise[0] + rise[1]) < upper) return -1.0;
+  const double negligible = 1e-19 * std::max({rise[0] + rise[1], -(fall[0] + fall[1]), std::abs(c[0])});
   std::size_t terms = c.size();
-  while (terms > 1 && size[terms - 1] <= 1e-18 * largest) --terms;
+  while (terms > 1 && size[terms - 1] <= negligible) --terms;
   c = c.first(terms);
 
   Samples sampled;

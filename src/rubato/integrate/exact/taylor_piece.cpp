@@ -242,7 +242,11 @@ void TaylorPiece::fill_coefficients() {
         forcing(forcing_.data() + k * n_, n_);
     Eigen::Map<Column> next_q(q_.data() + (k + 1) * n_, n_), next_v(v_.data() + (k + 1) * n_, n_);
     const double factor = inverse[static_cast<std::size_t>(k)];
-    if constexpr (N != Eigen::Dynamic) {
+    if constexpr (N != Eigen::Dynamic && N <= 3) {  // nothing but two operations from one velocity to the next
+      const Square scaled_stiffness = factor * stiffness, scaled_damping = factor * damping;
+      const Column elastic = factor * forcing - scaled_stiffness.lazyProduct(q);
+      next_v = elastic - scaled_damping.lazyProduct(v);
+    } else if constexpr (N != Eigen::Dynamic) {
       const Column elastic = stiffness.lazyProduct(q), viscous = damping.lazyProduct(v);
       next_v = factor * ((forcing - elastic) - viscous);
     } else {
