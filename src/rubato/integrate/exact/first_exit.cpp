@@ -30,6 +30,22 @@ Point evaluate(std::span<const double> c, double s) {
   return {s, even + s * odd, odd + 2.0 * s * (even_slope + s * odd_slope)};
 }
 
+// How far the terms can carry it at most; even and odd ones apart, so that their sums do not wait for each other.
+bool stays_inside(std::span<const double> c, double lower, double upper, double length) {
+  const double square = length * length;
+  double power = length, fall = 0.0, rise = 0.0, even_fall = 0.0, even_rise = 0.0;
+  std::size_t k = 1;
+  for (; k + 1 < c.size(); k += 2, power *= square) {
+    const double odd = c[k] * power, even = c[k + 1] * (power * length);
+    fall += std::min(odd, 0.0);
+    rise += std::max(odd, 0.0);
+    even_fall += std::min(even, 0.0);
+    even_rise += std::max(even, 0.0);
+  }
+  if (k < c.size()) (c[k] < 0.0 ? fall : rise) += c[k] * power;
+  return c[0] + (fall + even_fall) > lower && c[0] + (rise + even_rise) < upper;
+}
+
 // All samples side by side: the recurrences of one would wait for each other.
 struct Samples {
   typedef double Lanes __attribute__((vector_size(samples * sizeof(double))));
@@ -140,27 +156,10 @@ double polynomial(std::span<const double> c, double s) {
 
 double first_exit(std::span<const double> c, double lower, double upper, double length) {
   assert(!c.empty() && c.size() <= most_terms);
-  // How far the terms can carry it at most, even and odd ones apart; and from where on they are below round-off.
-  std::array<double, most_terms + 1> size;
-  std::array<double, 2> fall{}, rise{}, power{length, length * length};
-  const double square = power[1];
-  for (std::size_t k = 1; k < c.size(); ++k) {
-    const std::size_t parity = k % 2 == 0;
-    const double term = c[k] * power[parity];
-    fall[parity] += std::min(term, 0.0);
-    rise[parity] += std::max(term, 0.0);
-    size[k] = std::abs(term);
-    power[parity] *= square;
-  }
-  if (c[0] + (fall[0] + fall[1]) > lower && c[0] + (rise[0] + rise[1]) < upper) return -1.0;
-  const double negligible = 1e-19 * std::max({rise[0] + rise[1], -(fall[0] + fall[1]), std::abs(c[0])});
-  std::size_t terms = c.size();
-  while (terms > 1 && size[terms - 1] <= negligible) --terms;
-  c = c.first(terms);
-
+  if (stays_inside(c, lower, upper, length)) return -1.0;
   Samples sampled;
-  sample(c.data(), terms, length, sampled);
-  Point low{0.0, c[0], terms > 1 ? c[1] : 0.0};
+  sample(c.data(), c.size(), length, sampled);
+  Point low{0.0, c[0], c.size() > 1 ? c[1] : 0.0};
   for (std::size_t i = 0; i < samples; ++i) {
     const Point high = sampled[i];
     for (const double sign : {1.0, -1.0}) {

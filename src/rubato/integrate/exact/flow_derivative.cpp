@@ -1,8 +1,10 @@
 #include <rubato/integrate/exact/flow_derivative.hpp>
 #include <rubato/integrate/exact/processor_clones.hpp>
+#include <rubato/integrate/exact/series_length.hpp>
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <utility>
 
 namespace rubato::integrate {
@@ -41,12 +43,9 @@ RUBATO_CLONES void multiply(const double* a, const double* b, Index rows, Index 
     }
 }
 
-// The terms of exp(x) down to the neglected one.
-Index terms_of(double x, Index most, double neglected) {
-  Index k = 1;
-  double term = x;
-  while (k < most && term > neglected) term *= x / static_cast<double>(++k);
-  return k;
+const SeriesLength& series(bool small) {
+  static const SeriesLength of_small(neglected_of_small), of_large(neglected_of_large);
+  return small ? of_small : of_large;
 }
 
 }  // namespace
@@ -101,8 +100,9 @@ void FlowDerivative::pass(double length, double turn, const std::vector<SliderSt
   for (Index i = 0; i < m_; ++i)
     if (states[static_cast<std::size_t>(i)] != SliderState::stick) derivative_.row(2 * n_ + i).setZero();
   const Matrix& powers = powers_of(states);
-  const Index terms = terms_of(turn, degree_ + 1, degree_ == degree_of_small ? neglected_of_small : neglected_of_large);
-  if (rows_ <= largest_by_kernels) {
+  const bool small = rows_ <= largest_by_kernels;
+  const Index terms = series(small).terms(turn, degree_ + 1);
+  if (small) {
     combine(powers.data(), rows_ * size_, terms, length, propagator_.data());
     multiply(propagator_.data(), derivative_.data(), rows_, size_, product_.data());
   } else {

@@ -36,15 +36,6 @@ void turn_by(double x, const Nodes& offset, Nodes& cosine, Nodes& sine) {
   sine << odd, -odd.reverse();
 }
 
-// The number of terms of a piece that matter, if a share x / reach of its longest length is used: x^k/k! below
-// round-off, and two more for the second derivative.
-Index terms_of(double x) {
-  Index k = 1;
-  double term = x;
-  while (k < TaylorPiece::degree - 2 && term > 1e-18) term *= x / static_cast<double>(++k);
-  return std::min<Index>(k + 3, TaylorPiece::degree + 1);
-}
-
 struct Range {
   double low = HUGE_VAL, high = -HUGE_VAL;
   double half_peak_to_peak(bool half) const {
@@ -66,8 +57,8 @@ void Orbit::add(const TaylorPiece& piece, double start, double length, const std
   Piece& kept = pieces_[count_++];
   kept.start = start;
   kept.length = length;
-  kept.turn = TaylorPiece::reach * std::min(length / piece.max_length(), 1.0);
-  kept.terms = std::min(piece.terms(), terms_of(kept.turn));
+  kept.turn = piece.rate() * length;
+  kept.terms = std::min(piece.terms(), TaylorPiece::terms_of(kept.turn) + 2);  // two more for the second derivative
   kept.states = states;
   const Index m = system_.slider_count();
   kept.q.resize(system_.size(), TaylorPiece::degree + 1);
