@@ -1,16 +1,10 @@
 #include <rubato/integrate/exact/first_exit.hpp>
+#include <rubato/integrate/exact/processor_clones.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-
-// Fused multiplications are off everywhere, so that all clones give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define RUBATO_CLONES __attribute__((target_clones("default", "avx2", "avx512f")))
-#else
-#define RUBATO_CLONES
-#endif
 
 namespace rubato::integrate {
 namespace {
@@ -36,6 +30,22 @@ Point evaluate(std::span<const double> c, double s) {
   return {s, even + s * odd, odd + 2.0 * s * (even_slope + s * odd_slope)};
 }
 
+// How far the terms can carry it at most; even and odd ones apart, so that their sums do not wait for each other.
+bool stays_inside(std::span<const double> c, double lower, double upper, double length) {
+  const double square = length * length;
+  double power = length, fall = 0.0, rise = 0.0, even_fall = 0.0, even_rise = 0.0;
+  std::size_t k = 1;
+  for (; k + 1 < c.size(); k += 2, power *= square) {
+    const double odd = c[k] * power, even = c[k + 1] * (power * length);
+    fall += std::min(odd, 0.0);
+    rise += std::max(odd, 0.0);
+    even_fall += std::min(even, 0.0);
+    even_rise += std::max(even, 0.0);
+  }
+  if (k < c.size()) (c[k] < 0.0 ? fall : rise) += c[k] * power;
+  return c[0] + (fall + even_fall) > lower && c[0] + (rise + even_rise) < upper;
+}
+
 // All samples side by side: the recurrences of one would wait for each other.
 struct Samples {
   typedef double Lanes __attribute__((vector_size(samples * sizeof(double))));
@@ -44,13 +54,18 @@ struct Samples {
 };
 
 RUBATO_CLONES void sample(const double* c, std::size_t terms, double length, Samples& result) {
-  Samples::Lanes at, value{}, slope{};
+  Samples::Lanes at, even{}, odd{}, even_slope{}, odd_slope{};
   for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
-  for (std::size_t k = terms; k-- > 0;) {
-    slope = slope * at + value;
-    value = value * at + c[k];
+  const Samples::Lanes square = at * at;
+  std::size_t k = terms;
+  if (k % 2 == 1) even = c[--k] - even;
+  for (; k > 0; k -= 2) {
+    even_slope = even_slope * square + even;
+    odd_slope = odd_slope * square + odd;
+    even = even * square + c[k - 2];
+    odd = odd * square + c[k - 1];
   }
-  result = {at, value, slope};
+  result = {at, even + at * odd, odd + 2.0 * at * (even_slope + at * odd_slope)};
 }
 
 // Where the cubic with the values and slopes of both ends vanishes, nearly: three steps of Newton from the secant.
@@ -141,24 +156,10 @@ double polynomial(std::span<const double> c, double s) {
 
 double first_exit(std::span<const double> c, double lower, double upper, double length) {
   assert(!c.empty() && c.size() <= most_terms);
-  // How far the terms can carry it at most; and from where on they are below round-off.
-  std::array<double, most_terms> size;
-  double fall = 0.0, rise = 0.0, largest = std::abs(c[0]), power = length;
-  for (std::size_t k = 1; k < c.size(); ++k, power *= length) {
-    const double term = c[k] * power;
-    fall += std::min(term, 0.0);
-    rise += std::max(term, 0.0);
-    size[k] = std::abs(term);
-    largest = std::max(largest, size[k]);
-  }
-  if (c[0] + fall > lower && c[0] + rise < upper) return -1.0;
-  std::size_t terms = c.size();
-  while (terms > 1 && size[terms - 1] <= 1e-18 * largest) --terms;
-  c = c.first(terms);
-
+  if (stays_inside(c, lower, upper, length)) return -1.0;
   Samples sampled;
-  sample(c.data(), terms, length, sampled);
-  Point low{0.0, c[0], terms > 1 ? c[1] : 0.0};
+  sample(c.data(), c.size(), length, sampled);
+  Point low{0.0, c[0], c.size() > 1 ? c[1] : 0.0};
   for (std::size_t i = 0; i < samples; ++i) {
     const Point high = sampled[i];
     for (const double sign : {1.0, -1.0}) {

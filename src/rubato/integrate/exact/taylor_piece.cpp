@@ -1,3 +1,4 @@
+#include <rubato/integrate/exact/series_length.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/numerics/gauss_legendre.hpp>
 
@@ -45,26 +46,17 @@ constexpr std::array<double, TaylorPiece::degree + 1> inverse = [] {
   return table;
 }();
 
-// The largest x = length * rate for which a polynomial of a degree is exact: x^(degree+1)/(degree+1)! as at `reach`.
-const std::array<double, TaylorPiece::degree + 1>& reaches() {
-  static const auto table = [] {
-    std::array<double, TaylorPiece::degree + 1> x{};
-    const double neglected =
-        (TaylorPiece::degree + 1) * std::log(TaylorPiece::reach) - std::lgamma(TaylorPiece::degree + 2);
-    for (std::size_t d = 0; d < x.size(); ++d)
-      x[d] = std::exp((neglected + std::lgamma(static_cast<double>(d + 2))) / static_cast<double>(d + 1));
-    return x;
-  }();
-  return table;
+// x^k/k! that is neglected: reach^25/25!, beyond round-off.
+const SeriesLength& series() {
+  static const SeriesLength length([] {
+    double term = 1.0;
+    for (int k = 1; k <= TaylorPiece::degree + 1; ++k) term *= TaylorPiece::reach / k;
+    return term * (1.0 + 1e-12);
+  }());
+  return length;
 }
 
-// How few terms do for x = length * rate; the decisions of sliders at their limits look at seven.
-Index terms_of(double x) {
-  const auto& reach = reaches();
-  std::size_t degree = 7;
-  while (degree < TaylorPiece::degree && reach[degree] < x) ++degree;
-  return static_cast<Index>(degree + 1);
-}
+constexpr Index fewest_terms = 8;  // the decisions of sliders at their limits look at the first seven
 
 double largest_eigenvalue(const Matrix& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().cwiseAbs().maxCoeff();
@@ -121,6 +113,7 @@ void TaylorPiece::set_pattern() {
   largest_load_frequency_ = 0.0;
   for (const Load& load : loads_)
     largest_load_frequency_ = std::max(largest_load_frequency_, std::abs(load.angular_frequency));
+  load_length_ = reach / std::max(largest_load_frequency_, 1e-300);
   growth_.setZero(n_ * degree, 2 * count);
   load_start_.resize(2 * count);
   for (Index i = 0; i < count; ++i) {
@@ -178,16 +171,17 @@ const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<Slider
   }
   // |eigenvalue| <= the positive root of x^2 = c x + k with the norms of C and K in the metric of M.
   const double k = largest_eigenvalue(inverse_root_ * stiffness * inverse_root_.transpose());
-  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness),
-                      0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k))};
+  const double rate = 0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k));
+  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness), rate, reach / std::max(rate, 1e-300)};
   return cache_.emplace(key_, std::move(operators)).first->second;
 }
 
 void TaylorPiece::start(const system::State& state, const std::vector<SliderState>& states, double end) {
   operators_ = &operators_of(states);
   start_ = state.t;
-  length_ = reach / std::max({operators_->rate, largest_load_frequency_, 1e-300});
-  terms_ = terms_of(std::min(reach, reach * (end - state.t) / length_));
+  rate_ = std::max(operators_->rate, largest_load_frequency_);
+  length_ = std::min(operators_->length, load_length_);
+  terms_ = std::max(fewest_terms, terms_of(rate_ * (end - state.t)));
   states_ = states;
   q_.col(0) = state.q;
   v_.col(0) = state.v;
@@ -242,7 +236,11 @@ void TaylorPiece::fill_coefficients() {
         forcing(forcing_.data() + k * n_, n_);
     Eigen::Map<Column> next_q(q_.data() + (k + 1) * n_, n_), next_v(v_.data() + (k + 1) * n_, n_);
     const double factor = inverse[static_cast<std::size_t>(k)];
-    if constexpr (N != Eigen::Dynamic) {
+    if constexpr (N != Eigen::Dynamic && N <= 3) {  // nothing but two operations from one velocity to the next
+      const Square scaled_stiffness = factor * stiffness, scaled_damping = factor * damping;
+      const Column elastic = factor * forcing - scaled_stiffness.lazyProduct(q);
+      next_v = elastic - scaled_damping.lazyProduct(v);
+    } else if constexpr (N != Eigen::Dynamic) {
       const Column elastic = stiffness.lazyProduct(q), viscous = damping.lazyProduct(v);
       next_v = factor * ((forcing - elastic) - viscous);
     } else {
@@ -287,6 +285,8 @@ void TaylorPiece::horner(double s, double* q_out, double* v_out) const {
     }
   }
 }
+
+Index TaylorPiece::terms_of(double turn) { return series().terms(turn, degree + 1); }
 
 double TaylorPiece::displacement_scale(Index slider) const {
   const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];

@@ -42,6 +42,10 @@ class TaylorPiece {
 
   /// How far the polynomial is exact, but for `end` [s].
   double max_length() const { return length_; }
+  /// A bound of the fastest rate of all that moves [1/s].
+  double rate() const { return rate_; }
+  /// How many terms are exact to round-off over length * rate.
+  static Index terms_of(double turn);
   /// Of the polynomials: degree + 1, or fewer.
   Index terms() const { return terms_; }
 
@@ -70,6 +74,7 @@ class TaylorPiece {
   struct Operators {
     Matrix stiffness;  // M^-1 (K + stuck)
     double rate;       // a bound of |eigenvalues|
+    double length;     // reach / rate
   };
   struct Load {
     double angular_frequency = 0.0, phase = 0.0;
@@ -94,7 +99,7 @@ class TaylorPiece {
   std::map<std::vector<SliderState>, Operators> cache_;
   std::vector<SliderState> key_;
   const Operators* operators_ = nullptr;
-  double length_ = 0.0, start_ = 0.0;
+  double length_ = 0.0, load_length_ = 0.0, rate_ = 0.0, start_ = 0.0;
   std::vector<SliderState> states_;
   // What a load's value and rate of turn, cos and sin of its angle, make of M^-1 P l, by columns of degree in each
   // column; of a table, its value and slope. [n degree x 2 loads]

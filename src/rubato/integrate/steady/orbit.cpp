@@ -10,17 +10,30 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr int nodes = 12;  // exact to round-off over the longest piece, for harmonics that turn by up to 3 rad in it
-constexpr double turn = 3.0;
+// Exact to round-off for what turns by z rad: z^20 (10!)^4/(21 (20!)^3) = 5e-17 at 5, the products of displacements
+// that turn by TaylorPiece::reach with harmonics that turn by `most_turn`.
+constexpr int nodes = 10;
+constexpr double most_turn = 3.0;
 using Nodes = Eigen::Array<double, nodes, 1>;
 
-// The number of terms of a piece that matter, if a share x / reach of its longest length is used: x^k/k! below
-// round-off, and two more for the second derivative.
-Index terms_of(double x) {
-  Index k = 1;
-  double term = x;
-  while (k < TaylorPiece::degree - 2 && term > 1e-18) term *= x / static_cast<double>(++k);
-  return std::min<Index>(k + 3, TaylorPiece::degree + 1);
+// cos(k x) and sin(k x) of the nodes about the middle of an interval, which lie symmetrically, to round-off up to x of
+// half of most_turn: terms to x^23/23!.
+void turn_by(double x, const Nodes& offset, Nodes& cosine, Nodes& sine) {
+  using Half = Eigen::Array<double, nodes / 2, 1>;
+  static constexpr auto inverse = [] {
+    std::array<double, 24> table{};
+    for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k * (k + 1));
+    return table;
+  }();
+  const Half angle = x * offset.head<nodes / 2>(), square = angle * angle;
+  Half even = Half::Ones(), odd = even;
+  for (std::size_t k = 22; k > 0; k -= 2) {
+    even = 1.0 - even * (square * inverse[k - 1]);
+    odd = 1.0 - odd * (square * inverse[k]);
+  }
+  odd *= angle;
+  cosine << even, even.reverse();
+  sine << odd, -odd.reverse();
 }
 
 struct Range {
@@ -44,7 +57,8 @@ void Orbit::add(const TaylorPiece& piece, double start, double length, const std
   Piece& kept = pieces_[count_++];
   kept.start = start;
   kept.length = length;
-  kept.terms = std::min(piece.terms(), terms_of(TaylorPiece::reach * std::min(length / piece.max_length(), 1.0)));
+  kept.turn = piece.rate() * length;
+  kept.terms = std::min(piece.terms(), TaylorPiece::terms_of(kept.turn) + 2);  // two more for the second derivative
   kept.states = states;
   const Index m = system_.slider_count();
   kept.q.resize(system_.size(), TaylorPiece::degree + 1);
@@ -64,7 +78,7 @@ bool Orbit::slips(Index slider) const {
 }
 
 void Orbit::carry(FlowDerivative& derivative) const {
-  for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].states);
+  for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].turn, pieces_[i].states);
 }
 
 std::span<double> Orbit::difference(const Piece& piece, Index first, Index second, std::span<double> storage) const {
@@ -126,32 +140,46 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
   static const numerics::GaussLegendre<nodes> gauss;
   static const Nodes node = Eigen::Map<const Nodes>(gauss.node.data());
   static const Nodes weight = Eigen::Map<const Nodes>(gauss.weight.data());
+  static const Nodes offset = node - 0.5;
+  using Complex = std::complex<double>;
   const Index n = system_.size();
   const auto observed = static_cast<Index>(request.observed.size());
   const auto orders = static_cast<Index>(request.harmonics.size());
   const double omega = excitation.angular_frequency, period = excitation.period(), share = half ? 2.0 : 1.0;
   const SparseMatrix& damping = system_.damping();
-  response.mean = Vector::Zero(observed);
-  response.rms = Vector::Zero(observed);
-  response.harmonics = ComplexMatrix::Zero(observed, orders);
+  response.mean.setZero(observed);
+  response.rms.setZero(observed);
+  response.harmonics.setZero(observed, orders);
   response.viscous_work = response.input_work = 0.0;
 
   int highest = excitation.harmonics.empty() ? 1 : excitation.harmonics.back().order;
   for (const int order : request.harmonics) highest = std::max(highest, order);
-  Eigen::Array<double, nodes, Eigen::Dynamic> q(nodes, n), v(nodes, n);
-  std::array<std::complex<double>, nodes> turned, rotated;
-  const auto rotate = [&](int order) {  // exp(i order w t)
-    for (std::size_t j = 0; j < nodes; ++j) {
-      std::complex<double> power = turned[j];
-      for (int k = 1; k < order; ++k) power *= turned[j];
-      rotated[j] = power;
+  positions_.resize(nodes, n);
+  velocities_.resize(nodes, n);
+  // exp(i order w t) about the middle of a part, times the weights, and the middle's own.
+  Nodes base_cosine, base_sine, cosine, sine;
+  Complex middle;
+  int present = 0;
+  const auto rotate = [&](int order) {
+    if (present > order) present = 0;
+    if (present == 0) {
+      cosine = weight;
+      sine.setZero();
+    }
+    for (; present < order; ++present) {
+      const Nodes before = cosine;
+      cosine = before * base_cosine - sine * base_sine;
+      sine = before * base_sine + sine * base_cosine;
     }
   };
+  // The integral over the part of x exp(i order w t), per width.
+  const auto moment = [&](const auto& x) { return Complex((x * cosine).sum(), (x * sine).sum()); };
 
   for (std::size_t i = 0; i < count_; ++i) {
     const Piece& piece = pieces_[i];
-    const int parts = std::max(1, static_cast<int>(std::ceil(highest * omega * piece.length / turn)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(highest * omega * piece.length / most_turn)));
     const double width = piece.length / parts;
+    turn_by(omega * width, offset, base_cosine, base_sine);
     for (int part = 0; part < parts; ++part) {
       const Nodes s = width * (part + node);
       for (Index c = 0; c < n; ++c) {
@@ -160,45 +188,44 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
           slope = slope * s + value;
           value = value * s + piece.q(c, k);
         }
-        q.col(c) = value;
-        v.col(c) = slope;
+        positions_.col(c) = value;
+        velocities_.col(c) = slope;
       }
-      for (std::size_t j = 0; j < nodes; ++j)
-        turned[j] = std::polar(1.0, omega * (piece.start + s[static_cast<Index>(j)]));
+      const double angle = omega * (piece.start + width * (part + 0.5));
+      present = 0;
+      int turned = 1;
+      middle = std::polar(1.0, angle);
+      const auto turn_middle = [&](int order) {
+        if (order != turned) middle = std::polar(1.0, order * angle);
+        turned = order;
+      };
 
       for (Index o = 0; o < observed; ++o) {
         const auto& what = request.observed[static_cast<std::size_t>(o)];
-        Nodes x = q.col(what.first);
-        if (what.second != ground) x -= q.col(what.second);
+        Nodes x = positions_.col(what.first);
+        if (what.second != ground) x -= positions_.col(what.second);
         response.mean[o] += width * (weight * x).sum();
         response.rms[o] += width * (weight * x.square()).sum();
-      }
-      for (Index h = 0; h < orders; ++h) {
-        rotate(request.harmonics[static_cast<std::size_t>(h)]);
-        for (Index o = 0; o < observed; ++o) {
-          const auto& what = request.observed[static_cast<std::size_t>(o)];
-          std::complex<double> sum = 0.0;
-          for (Index j = 0; j < nodes; ++j) {
-            const double x = q(j, what.first) - (what.second == ground ? 0.0 : q(j, what.second));
-            sum += weight[j] * x * std::conj(rotated[static_cast<std::size_t>(j)]);
-          }
-          response.harmonics(o, h) += width * sum;
+        for (Index h = 0; h < orders; ++h) {
+          const int order = request.harmonics[static_cast<std::size_t>(h)];
+          rotate(order);
+          turn_middle(order);
+          response.harmonics(o, h) += width * std::conj(middle * moment(x));
         }
       }
       for (const LoadHarmonic& load : excitation.harmonics) {
         rotate(load.order);
-        std::complex<double> sum = 0.0;
-        for (Index c = 0; c < n; ++c) {
-          if (load.amplitude[c] == 0.0) continue;
-          std::complex<double> moment = 0.0;
-          for (Index j = 0; j < nodes; ++j) moment += weight[j] * q(j, c) * rotated[static_cast<std::size_t>(j)];
-          sum += load.amplitude[c] * moment;
-        }
-        response.input_work += share * omega * load.order * width * sum.imag();
+        turn_middle(load.order);
+        Complex sum = 0.0;
+        for (Index c = 0; c < n; ++c)
+          if (load.amplitude[c] != 0.0) sum += load.amplitude[c] * moment(positions_.col(c));
+        response.input_work += share * omega * load.order * width * (middle * sum).imag();
       }
-      for (Index c = 0; c < damping.outerSize(); ++c)
+      for (Index c = 0; c < damping.outerSize(); ++c) {
+        const Nodes weighted = weight * velocities_.col(c);
         for (SparseMatrix::InnerIterator entry(damping, c); entry; ++entry)
-          response.viscous_work += share * width * entry.value() * (weight * v.col(entry.row()) * v.col(c)).sum();
+          response.viscous_work += share * width * entry.value() * (velocities_.col(entry.row()) * weighted).sum();
+      }
     }
   }
   if (half) response.mean.setZero();
@@ -213,9 +240,9 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
 void Orbit::measure_sliders(double period, bool half, SteadyResponse& response) const {
   const Index m = system_.slider_count();
   const double share = half ? 2.0 : 1.0;
-  response.dissipated = Vector::Zero(m);
-  response.slip_share = Vector::Zero(m);
-  response.offset = Vector::Zero(m);
+  response.dissipated.setZero(m);
+  response.slip_share.setZero(m);
+  response.offset.setZero(m);
   response.transitions = 0;
   std::array<double, TaylorPiece::degree + 1> storage;
   for (Index i = 0; i < m; ++i) {

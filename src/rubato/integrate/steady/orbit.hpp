@@ -33,6 +33,7 @@ class Orbit {
  private:
   struct Piece {
     double start = 0.0, length = 0.0;  // [s]
+    double turn = 0.0;                 // length times the fastest rate
     Index terms = 0;                   // of the polynomials that matter over the length
     Matrix q;                          // coefficients, the first `terms` columns [n x degree + 1]
     Vector offset, limit;              // of the slider forces [m] [N]
@@ -47,7 +48,8 @@ class Orbit {
 
   const system::LocallyNonlinear& system_;
   std::vector<Piece> pieces_;
-  std::size_t count_ = 0;  // of the pieces in use: their memory is kept
+  std::size_t count_ = 0;                           // of the pieces in use: their memory is kept
+  mutable Eigen::ArrayXXd positions_, velocities_;  // at the nodes of a quadrature, by columns of coordinate
 };
 
 }  // namespace rubato::integrate

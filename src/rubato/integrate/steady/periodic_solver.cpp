@@ -85,9 +85,14 @@ void PeriodicSolver::put(const Vector& y, const Excitation& excitation) {
 }
 
 double PeriodicSolver::size_of(const Excitation& excitation, const Vector& y) const {
-  const double omega = excitation.angular_frequency;
-  const Vector product = system_.mass() * y.head(n_), rate_product = system_.mass() * y.segment(n_, n_);
-  return std::sqrt(y.head(n_).dot(product) + y.segment(n_, n_).dot(rate_product) / (omega * omega));
+  double energy = 0.0, rate_energy = 0.0;
+  const SparseMatrix& mass = system_.mass();
+  for (Index c = 0; c < mass.outerSize(); ++c)
+    for (SparseMatrix::InnerIterator entry(mass, c); entry; ++entry) {
+      energy += y[entry.row()] * entry.value() * y[c];
+      rate_energy += y[n_ + entry.row()] * entry.value() * y[n_ + c];
+    }
+  return std::sqrt(energy + rate_energy / (excitation.angular_frequency * excitation.angular_frequency));
 }
 
 // One pass of the flow from y_, over a period or half of it: orbit and P(y) - y.
@@ -253,7 +258,7 @@ void PeriodicSolver::predict(const Excitation& excitation) {
 }
 
 double PeriodicSolver::scaled_size(const Vector& y, double omega) const {
-  return std::hypot(y.head(n_).norm(), y.segment(n_, n_).norm() / omega);
+  return std::sqrt(y.head(n_).squaredNorm() + y.segment(n_, n_).squaredNorm() / (omega * omega));
 }
 
 // The oldest goes where there are too many, and those of the same frequency.
@@ -408,12 +413,14 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
       moving = true;
       best = infinity;
     }
+    // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
+    const bool factors_do = near_factors_ && 2.0 * last * last < 0.1 * options_.tolerance * best;
     near_factors_ = false;
     if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
       best = last;
       best_ = y_;
       halvings = 0;
-      factorise();
+      if (!factors_do) factorise();
       const bool solved = correct();
       offset_shift_.setZero();
       if (solved) {
