@@ -293,5 +293,56 @@ TEST(Excitation, KnowsTheCommonPeriod) {
   EXPECT_THROW(excitation_of(system::LocallyNonlinear(parts)), InvalidInput);
 }
 
+// Forces of two frequencies may push a chain that nothing but sliders holds on its way: this one walks 0.2 m a period
+// for ever, as a transient shows. Far enough away the walk would be round-off of the position: that is no orbit either.
+TEST(PeriodicSolver, TakesNoWalkForAnOrbit) {
+  system::LocallyNonlinear::Parts parts;
+  Vector mass(3);
+  mass << 0.6845140700736068, 0.3275829134036167, 0.4040026583457988;
+  const double first = 41.24021377000159, second = 19.888779810299482;
+  Matrix k(3, 3);
+  k << first, -first, 0.0, -first, first + second, -second, 0.0, -second, second;
+  parts.mass = testing::sparse(mass.asDiagonal().toDenseMatrix());
+  parts.stiffness = testing::sparse(k);
+  parts.damping = testing::sparse(0.02554924503352102 * mass.asDiagonal().toDenseMatrix() + 0.006196847218834506 * k);
+  parts.sliders = {{"strong", 0, ground, 1.0390431529711275, 0.4673182459810743 * 16.996279588441713},
+                   {"weak", 1, ground, 56.694137668549125, 0.9664050727189776 * 0.020625237756364004}};
+  const double w = 1.115219175335083;
+  parts.loads = system::Loads({testing::harmonic(1, 3.5560775831818128, w, 2.609013441762306),
+                               testing::harmonic(2, 2.776981873547507, 0.5 * w, 0.7923888146300833)});
+  parts.coordinates = {"c0", "c1", "c2"};
+  const system::LocallyNonlinear system(std::move(parts));
+  PeriodicSolver solver(system, {{{0}, {1}, {2}}, {1}, false});
+  SteadyResponse response;
+  solver.solve(excitation_of(system), SteadyStart::unloaded, response);
+  EXPECT_EQ(response.status, SteadyStatus::not_converged);
+  EXPECT_GT(response.residual, 1e-6);
+}
+
+// The damper without its spring to the ground: only the contacts hold it. The second harmonic makes neither half of the
+// period the mirror of the other, so that nothing but friction says where the damper stands.
+TEST(PeriodicSolver, FindsTheOrbitOfADamperThatOnlyItsContactsHold) {
+  const auto base = damper_model(10.0, 7.6, -8.0);
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = base.mass();
+  parts.damping = base.damping();
+  parts.stiffness = base.stiffness();
+  parts.stiffness.coeffRef(4, 4) = 0.0;
+  parts.damping.coeffRef(4, 4) = 0.0;
+  parts.sliders = base.sliders();
+  parts.coordinates = base.coordinates();
+  parts.loads = system::Loads(
+      {testing::harmonic(1, 20.0, 7.6), testing::harmonic(3, -8.0, 7.6), testing::harmonic(3, 6.0, 15.2, 0.3)});
+  const system::LocallyNonlinear system(std::move(parts));
+  PeriodicSolver solver(system, {{{1}, {3}, {4}}, {1}, false});
+  SteadyResponse response;
+  solver.solve(excitation_of(system), SteadyStart::unloaded, response);
+  EXPECT_EQ(response.status, SteadyStatus::converged);
+  EXPECT_LE(response.residual, 1e-12);
+  EXPECT_GT(response.dissipated.minCoeff(), 0.0);
+  EXPECT_NEAR(response.input_work, response.viscous_work + response.dissipated.sum(), 1e-10 * response.input_work);
+  EXPECT_LT(solver.state().q.norm(), 1e3 * response.amplitude.maxCoeff());
+}
+
 }  // namespace
 }  // namespace rubato::integrate

@@ -13,7 +13,7 @@ namespace {
 constexpr double at_limit = 1e-13;  // relative distance of a force from its limit that is round-off of the location
 constexpr double at_rest = 1e-14;   // likewise of a term of u against the largest of the displacements it is made of
 constexpr int most_order = 6;       // of the terms of u that are looked at
-constexpr double no_time = 1e-10;    // of a piece: events that are as near happen at once
+constexpr double no_time = 1e-10;   // of a piece: events that are as near happen at once
 constexpr long most_without_time = 200;
 
 int sign(SliderState state) { return static_cast<int>(state); }

@@ -2,6 +2,7 @@
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,9 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
       start_(system.start()),
       end_(system.start()) {
   y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
+  const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
+  const Index rigid = (modes.eigenvalues.array() == 0.0).count();
+  if (m_ > 0) rigid_ = modes.shapes.leftCols(rigid);
   differences_.assign(most_interpolated - 1, y_);
   wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
 }
@@ -141,7 +145,21 @@ void PeriodicSolver::factorise() {
       if (slider.first != ground) matrix_(row, slider.first) -= slider.stiffness;
       if (slider.second != ground) matrix_(row, slider.second) += slider.stiffness;
     }
+  if (!half_ && rigid_.cols() > 0) hold_rigid_motions();
   factors_.compute(matrix_);
+}
+
+// Where all sliders that hold a rigid motion slip, the orbit may lie anywhere along it: Newton's steps leave it in
+// place, in the metric of the mass.
+void PeriodicSolver::hold_rigid_motions() {
+  Matrix held = Matrix::Zero(m_, rigid_.cols());
+  for (Index i = 0; i < m_; ++i)
+    if (!orbit_.slips(i))
+      for (Index k = 0; k < rigid_.cols(); ++k) held(i, k) = system_.relative_displacement(i, rigid_.col(k));
+  const Eigen::FullPivLU<Matrix> holds(held);
+  if (holds.dimensionOfKernel() == 0) return;
+  const Matrix open = rigid_ * holds.kernel();
+  matrix_.topLeftCorner(n_, n_) += open * (open.transpose() * Matrix(system_.mass()));
 }
 
 // Newton's step from y_, with the matrix last factorised. False at a resonance without damping.

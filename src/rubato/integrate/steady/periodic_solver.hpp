@@ -59,6 +59,7 @@ class PeriodicSolver final : public SteadySolver {
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
   void factorise();
+  void hold_rigid_motions();
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
   bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
@@ -85,6 +86,7 @@ class PeriodicSolver final : public SteadySolver {
   Vector wanted_offset_, offset_shift_, offset_probe_,
       centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
+  Matrix rigid_;  // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
   Eigen::PartialPivLU<Matrix> factors_;
   bool factors_are_of_orbit_ = false;
   bool near_factors_ = false;        // the last pass was made after a full step with these factors
