@@ -285,14 +285,14 @@ TEST(TimeMarching, AgreesAcrossFamiliesOnRandomModels) {
 }
 
 TEST(TimeMarching, FindsAChainOfManySlidersByTheSteppersToo) {
-  // Forty coordinates: beyond the lanes, and beyond Broyden's matrix.
-  const auto system = testing::chain(40, 12, 0.5);
+  // Sixty coordinates: beyond the lanes, and beyond Broyden's matrix.
+  const auto system = testing::chain(60, 12, 0.5);
   auto options = with_method("average_acceleration", 1e-3);
   options.periodicity = 1e-7;
-  const auto mixed = response_of(system, options, observing({13, 20}));
+  const auto mixed = response_of(system, options, observing({20, 30}));
   ASSERT_EQ(mixed.status, SteadyStatus::converged);
   options.extrapolates = false;
-  const auto marched = response_of(system, options, observing({13, 20}));
+  const auto marched = response_of(system, options, observing({20, 30}));
   EXPECT_EQ(marched.status, SteadyStatus::converged);
   EXPECT_NEAR(mixed.amplitude[0], marched.amplitude[0], (mixed.error + marched.error) * marched.amplitude.maxCoeff());
   EXPECT_LT(mixed.iterations, marched.iterations);

@@ -14,7 +14,7 @@ namespace rubato::integrate {
 struct HarmonicBalanceOptions {
   double tolerance = 1e-3;            ///< wanted relative error of the amplitudes by truncation [-]
   double residual_tolerance = 2e-12;  ///< of the balance, relative to the relative displacements [-]
-  int most_harmonics = 63;            ///< highest order that may be balanced
+  int most_harmonics = 127;           ///< highest order that may be balanced
 };
 
 /// Steady responses as truncated Fourier series (harmonic balance).

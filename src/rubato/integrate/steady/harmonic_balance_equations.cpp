@@ -78,7 +78,14 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
       residual_[base + shift + 2 * i + 1] = sum.imag();
     }
   }
+  if (left_part_ > 0.0) residual_ -= left_part_ * left_;
   return residual_.size() == 0 ? 0.0 : residual_.cwiseAbs().maxCoeff();
+}
+
+void HarmonicBalanceEquations::keep_residual(const SliderSeries& series) {
+  left_part_ = 0.0;
+  evaluate(series);
+  left_ = residual_;
 }
 
 void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix& jacobian) {
@@ -146,8 +153,9 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   Outcome outcome;
-  double size = evaluate(series);
-  trial_ = series;
+  double size = evaluate(series), best = size;
+  trial_ = best_ = series;
+  recent_.fill(size);
   for (;;) {
     // Round-off of the linear part bounds what can be reached.
     const double reachable = std::max(tolerance * displacement_, 8e-15 * linear_);
@@ -161,6 +169,9 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
     if (!step_.allFinite()) break;
     double part = 1.0, next = 0.0;
     bool is_better = false;
+    // Where a slider begins to slip twice, or a loop splits, the residual has a kink: Newton must be allowed to pass it
+    // upwards (a line search that is not monotone: Grippo, Lampariello and Lucidi 1986).
+    const double largest = *std::max_element(recent_.begin(), recent_.end());
     for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
       for (std::size_t a = 0; a < active_.size(); ++a) {
         const Index j = active_[a], base = static_cast<Index>(a) * rows;
@@ -170,18 +181,25 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
               series.coefficients(i, j) - part * Complex(step_[base + shift + 2 * i], step_[base + shift + 2 * i + 1]);
       }
       next = evaluate(trial_);
-      is_better = next < (1.0 - 0.1 * part) * size;
+      is_better = next < (1.0 - 0.1 * part) * largest;
       if (is_better) break;
     }
     if (!is_better) {
       // At the floor of round-off nothing gets better; the loops belong to the series again.
+      if (best < size) std::swap(series, best_);
       size = evaluate(series);
+      outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
       outcome.has_converged = size <= 100.0 * reachable;
       break;
     }
     std::swap(series.mean, trial_.mean);
     std::swap(series.coefficients, trial_.coefficients);
     size = next;
+    recent_[static_cast<std::size_t>(outcome.iterations) % recent_.size()] = size;
+    if (size < best) {
+      best = size;
+      best_ = series;
+    }
   }
   return outcome;
 }
@@ -260,19 +278,18 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       }
     }
   }
-  Vector change(rows * m);
+  Vector change = -residual_;
   for (Index a = 0; a < m; ++a) {
     const Index row = active_[static_cast<std::size_t>(a)];
     if (series.has_mean) {
-      change[a * rows] = 0.0;
       for (const Index j : active_) change[a * rows] -= harmonics[0].receptance(row, j).real() * mean_change[j];
     }
     for (int i = 0; i < count; ++i) {
       Complex sum = 0.0;
       for (const Index j : active_)
         sum -= product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), force_change(i, j));
-      change[a * rows + shift + 2 * i] = sum.real();
-      change[a * rows + shift + 2 * i + 1] = sum.imag();
+      change[a * rows + shift + 2 * i] += sum.real();
+      change[a * rows + shift + 2 * i + 1] += sum.imag();
     }
   }
   solve_linear(series, change);

@@ -4,6 +4,7 @@
 #include <rubato/integrate/steady/hysteresis_loop.hpp>
 #include <rubato/integrate/steady/small_lu.hpp>
 
+#include <array>
 #include <vector>
 
 namespace rubato::integrate {
@@ -42,6 +43,9 @@ class HarmonicBalanceEquations {
     double residual = 0.0;  ///< relative to the displacements
     int iterations = 0;
   };
+  /// Continuation from a series that does not solve the balance: it shall leave a part of what this one leaves.
+  void keep_residual(const SliderSeries& series);
+  void leave(double part) { left_part_ = part; }
   /// Improves a series; what it holds after a failure is the best found.
   Outcome solve(SliderSeries& series, double tolerance, int most_iterations);
 
@@ -51,7 +55,8 @@ class HarmonicBalanceEquations {
   bool any_slips() const;
 
   /// Estimates what orders left out (from `first` place of the harmonics on) would change: their own displacements
-  /// [orders left out x m] and the change of the forces of those kept [count x m].
+  /// [orders left out x m] and the change of the forces of those kept [count x m], with what the rest of the residual
+  /// does to them.
   void truncation(const SliderSeries& series, std::size_t first, std::size_t end, ComplexMatrix& left_out,
                   ComplexMatrix& forces_left_out, ComplexMatrix& force_change);
 
@@ -71,11 +76,13 @@ class HarmonicBalanceEquations {
   std::vector<HysteresisLoop> loops_;
   ComplexMatrix force_;  ///< F_k - held kT U_k [count x m]
   Vector mean_force_;
-  Vector residual_, step_;
+  Vector residual_, step_, left_;
+  double left_part_ = 0.0;
   ComplexMatrix columns_;
   SmallLu factor_, own_factor_;
   bool is_regular_ = true;
-  SliderSeries trial_;
+  SliderSeries trial_, best_;
+  std::array<double, 4> recent_{};  ///< residuals of the last steps
   double displacement_ = 0.0, linear_ = 0.0;
 };
 

@@ -63,7 +63,8 @@ class LaneMap final : public PeriodMap {
   bool prepare(std::span<const Excitation> excitations, int steps) override;
   bool advance(const LaneArray& from, LaneArray& to, std::vector<PeriodRecord>* records, Index first) override;
   void encode(const system::State& state, LaneArray& states, Index lane) override;
-  Matrix linear_update() const override;
+  double observed_size(const LaneArray& differences, Index lane) const override;
+  Matrix linear_update() override;
 
  private:
   // Row of an outer state for number c of coordinate k.
@@ -492,17 +493,25 @@ void LaneMap::encode(const system::State& state, LaneArray& states, Index lane) 
   if (width_ == 3) x.segment(2 * n_ + m_, n_) = to_modes_ * start.auxiliary_acceleration / (omega_ * omega_);
 }
 
-Matrix LaneMap::linear_update() const {
-  const Prepared& prepared = prepared_[current_];
-  const Index size = n_ * width_;
-  Matrix period = Matrix::Identity(size, size), power = prepared.propagator;
-  for (int left = prepared.step.steps; left > 0; left /= 2) {
-    if (left % 2 == 1) period = period * power;
-    power = power * power;
+double LaneMap::observed_size(const LaneArray& differences, Index lane) const {
+  double size = 0.0;
+  for (Index i = 0; i < observation_.observed; ++i) {
+    const double* const combination = observation_.combination.data() + i * n_;
+    double q = 0.0, v = 0.0;
+    for (Index k = 0; k < n_; ++k) {
+      q += combination[k] * differences(k, lane);
+      v += combination[k] * differences(n_ + k, lane);
+    }
+    size = std::max(size, std::hypot(q, v));
   }
-  const Matrix inverse = (Matrix::Identity(size, size) - period).inverse();
+  return size;
+}
+
+Matrix LaneMap::linear_update() {
+  const Prepared& prepared = prepared_[current_];
+  const Matrix inverse = resolvent_of_power(prepared.propagator, prepared.step.steps);
+  if (inverse.size() == 0) return {};
   Matrix update = Matrix::Identity(this->size(), this->size());
-  if (!inverse.allFinite()) return update;
   for (Index k = 0; k < n_; ++k)
     for (Index c = 0; c < width_; ++c)
       for (Index l = 0; l < n_; ++l)

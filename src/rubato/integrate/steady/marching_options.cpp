@@ -5,6 +5,7 @@
 #include <rubato/integrate/stepper.hpp>
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,15 @@ double longest_step(const Method& method, const system::LocallyNonlinear& system
         method.name, stability.mode, stability.angular_frequency, stability.damping_ratio));
   constexpr double margin = 0.9;
   return margin * stability.step;
+}
+
+double highest_frequency(const system::LocallyNonlinear& system) {
+  constexpr Index largest = 200;
+  if (system.size() > largest) return std::numeric_limits<double>::infinity();
+  const Vector squares = Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(Matrix(system.stuck_stiffness()),
+                                                                          Matrix(system.mass()), Eigen::EigenvaluesOnly)
+                             .eigenvalues();
+  return std::sqrt(std::max(0.0, squares[squares.size() - 1]));
 }
 
 int amplitude_order(const Method& method) {

@@ -24,6 +24,9 @@ void check_options(const TimeMarchingOptions& options, const system::LocallyNonl
 /// for unconditional methods. Throws InvalidInput where no step is stable.
 double longest_step(const Method& method, const system::LocallyNonlinear& system);
 
+/// The highest natural frequency with all sliders stuck [rad/s]; infinity for a large structure, where nobody asks.
+double highest_frequency(const system::LocallyNonlinear& system);
+
 /// Order in which amplitudes converge: that of the method, but no more than 2, because transitions of sliders fall
 /// between the samples.
 int amplitude_order(const Method& method);

@@ -14,11 +14,16 @@ class OrbitExtrapolation {
  public:
   virtual ~OrbitExtrapolation() = default;
   /// A new search: what was seen before belongs to another map. Lanes other than before are strangers.
-  virtual void begin(const PeriodMap& map, Index lanes) = 0;
+  virtual void begin(PeriodMap& map, Index lanes) = 0;
   /// Takes the residuals of the states marched last, and writes the steps [size x lanes].
   virtual void next(const LaneArray& states, const LaneArray& residuals, LaneArray& steps) = 0;
+  /// Whether the last step guesses the distance to the end of the march: enough has been seen of how slowly it decays.
+  virtual bool knows_distance(Index lane) const = 0;
   /// What was learnt in this lane misleads.
   virtual void distrust(Index lane) = 0;
+  /// Learns the derivative of the residuals anew, by marching a period from states beside the given ones, for the lanes
+  /// that ask for it. Returns the periods marched; none where that costs more than it is worth.
+  virtual int measure(PeriodMap& map, const LaneArray& states, const std::vector<char>& asks) = 0;
   virtual void forget() = 0;
 };
 
@@ -30,17 +35,21 @@ class OrbitExtrapolation {
 /// A slider that sticks through the period has no residual, and keeps its slip.
 class BroydenExtrapolation final : public OrbitExtrapolation {
  public:
-  void begin(const PeriodMap& map, Index lanes) override;
+  void begin(PeriodMap& map, Index lanes) override;
   void next(const LaneArray& states, const LaneArray& residuals, LaneArray& steps) override;
+  bool knows_distance(Index lane) const override;
   void distrust(Index lane) override;
+  int measure(PeriodMap& map, const LaneArray& states, const std::vector<char>& asks) override;
   void forget() override { lanes_ = 0; }
 
  private:
   void update(const LaneArray& states, const LaneArray& residuals);
 
   Index size_ = 0, lanes_ = 0;
-  Matrix first_;       // H of the structure without sliders
-  LaneArray inverse_;  // H [size^2 x lanes], by rows
+  Matrix first_;  // H of the structure without sliders, or identity
+  bool knows_structure_ = false;
+  std::vector<int> updates_;  // since H was the first
+  LaneArray inverse_;         // H [size^2 x lanes], by rows
   LaneArray last_state_, last_residual_, s_, y_, hy_, sh_;
   bool has_last_ = false;
 };
@@ -51,9 +60,11 @@ class BroydenExtrapolation final : public OrbitExtrapolation {
 ///   step = r - (dX + dR) g,   g = argmin |r - dR g|.
 class AndersonExtrapolation final : public OrbitExtrapolation {
  public:
-  void begin(const PeriodMap& map, Index lanes) override;
+  void begin(PeriodMap& map, Index lanes) override;
   void next(const LaneArray& states, const LaneArray& residuals, LaneArray& steps) override;
+  bool knows_distance(Index lane) const override;
   void distrust(Index lane) override { histories_[static_cast<std::size_t>(lane)] = {}; }
+  int measure(PeriodMap&, const LaneArray&, const std::vector<char>&) override { return 0; }
   void forget() override {}
 
  private:

@@ -11,6 +11,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double round_off = 1e-13;
 
+constexpr int most_misled = 2;  // leaps, before the derivative of a period is measured
+
 enum class Next { rests, marches, leaps };
 
 /// One lane on its way.
@@ -21,17 +23,36 @@ class Lane {
   OrbitReport report;
   bool is_done = false;
   bool is_misled = false;  ///< the last leap led away
+  /// Leaps led away again and again, and the march that followed is over.
+  bool needs_measure() const { return !is_done && misled_ > most_misled && plain_ == 0 && !is_measured_; }
+  void measured(int periods) {
+    report.marched += periods;
+    is_measured_ = true;
+  }
 
   /// Takes a marched period and says where the next one starts.
-  /// @param scale, change, leap  norms of the state, of its change over the period, of the extrapolated step
-  Next next(double scale, double change, double leap) {
+  struct Sizes {
+    double state, change, leap;             ///< norms of the state, of its change over the period, of the guessed step
+    double observed_change, observed_leap;  ///< of what is observed [m]
+    bool leap_is_distance;                  ///< else it is only the best that is known
+  };
+  Next next(const Sizes& sizes) {
+    const auto& [scale, change, leap, observed_change, observed_leap, leap_is_distance] = sizes;
     ++report.marched;
     is_misled = false;
     report.residual = change == 0.0 ? 0.0 : change / scale;
     sizes_.push_back(scale);
-    report.distance = extrapolates_ ? std::max(leap, change) / scale : distance_by_decay();
-    if (change == 0.0) report.distance = 0.0;
-    const bool is_near = report.distance <= 10.0 * options_.tolerance || report.residual <= round_off;
+    if (report.residual <= round_off) {
+      report.distance = report.residual;
+      report.observed_distance = observed_change;
+    } else if (extrapolates_) {
+      report.distance = leap_is_distance ? std::max(leap, change) / scale : infinity;
+      report.observed_distance = leap_is_distance ? std::max(observed_leap, observed_change) : infinity;
+    } else {
+      report.distance = distance_by_decay();
+      report.observed_distance = observed_change * (report.distance / report.residual);
+    }
+    const bool is_near = report.distance <= 10.0 * options_.tolerance;
     if (report.residual <= options_.tolerance && (is_near || !extrapolates_)) {
       if (++confirmed_ >= options_.confirmations && is_near) {
         report.status = SteadyStatus::converged;
@@ -45,6 +66,8 @@ class Lane {
     // Sliders that change between stick and slip can mislead an extrapolation; the march itself cannot diverge.
     if (report.residual > 4.0 * best_ || !std::isfinite(leap)) {
       is_misled = true;
+      is_measured_ = false;
+      ++misled_;
       plain_ = patience_;
       patience_ *= 2;
       best_ = infinity;
@@ -107,7 +130,8 @@ class Lane {
   std::vector<double> sizes_;
   std::deque<Vector> history_;
   std::vector<int> hits_;
-  int confirmed_ = 0, plain_ = 0, patience_ = 2;
+  int confirmed_ = 0, plain_ = 0, patience_ = 2, misled_ = 0;
+  bool is_measured_ = false;
   double best_ = infinity;
 };
 
@@ -127,7 +151,8 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
                                        OrbitExtrapolation* extrapolation, LaneArray& states) {
   const Index count = states.cols();
   std::vector<Lane> lanes(static_cast<std::size_t>(count), Lane(options, extrapolation != nullptr));
-  LaneArray after, residuals, steps;
+  LaneArray after, residuals, steps = LaneArray::Zero(states.rows(), count);
+  std::vector<char> asks(lanes.size(), 0);
   if (extrapolation) extrapolation->begin(map, count);
   for (int period = 0; period < options.max_periods; ++period) {
     if (!map.advance(states, after, nullptr, 0)) {
@@ -145,8 +170,9 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
       Lane& lane = lanes[static_cast<std::size_t>(l)];
       if (lane.is_done) continue;
       const double scale = after.col(l).head(map.slip_start()).matrix().norm();
-      const double leap = extrapolation ? steps.col(l).matrix().norm() : 0.0;
-      const Next next = lane.next(scale, residuals.col(l).matrix().norm(), leap);
+      const Next next = lane.next({scale, residuals.col(l).matrix().norm(), steps.col(l).matrix().norm(),
+                                   map.observed_size(residuals, l), map.observed_size(steps, l),
+                                   extrapolation && extrapolation->knows_distance(l)});
       if (lane.is_misled) extrapolation->distrust(l);
       if (next == Next::leaps)
         states.col(l) += steps.col(l);
@@ -156,6 +182,16 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
       is_done = is_done && lane.is_done;
     }
     if (is_done) break;
+    if (!extrapolation) continue;
+    bool any_asks = false;
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      asks[l] = lanes[l].needs_measure();
+      any_asks = any_asks || asks[l];
+    }
+    if (!any_asks) continue;
+    const int periods = extrapolation->measure(map, states, asks);
+    for (std::size_t l = 0; l < lanes.size(); ++l)
+      if (asks[l]) lanes[l].measured(periods);
   }
   std::vector<OrbitReport> reports;
   for (Lane& lane : lanes) {

@@ -16,10 +16,11 @@ struct OrbitSearchOptions {
 /// What became of the march of one lane.
 struct OrbitReport {
   SteadyStatus status = SteadyStatus::not_converged;
-  double residual = 0.0;  ///< of the last period, relative [-]
-  double distance = 0.0;  ///< from where the march would end, relative, estimated [-]
-  int marched = 0;        ///< periods
-  int multiple = 1;       ///< it repeats after so many periods
+  double residual = 0.0;           ///< of the last period, relative [-]
+  double distance = 0.0;           ///< from where the march would end, relative, estimated [-]
+  double observed_distance = 0.0;  ///< the same of what is observed [m]
+  int marched = 0;                 ///< periods
+  int multiple = 1;                ///< it repeats after so many periods
 };
 
 /// Marches until the states repeat: the state one period apart differs by less than the tolerance, in consecutive

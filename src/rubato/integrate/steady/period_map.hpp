@@ -40,9 +40,16 @@ class PeriodMap {
   /// A state of the system, at the phase zero of the loads, in the letters of the map (after prepare).
   virtual void encode(const system::State& state, LaneArray& states, Index lane) = 0;
 
+  /// How far a difference of states moves what is observed: the largest |(dq, dv / omega)| over the observed of the
+  /// request [m].
+  virtual double observed_size(const LaneArray& differences, Index lane) const = 0;
+
   /// (I - dP/dx)^-1 of the structure without sliders [size x size], which makes of a residual the way to the end of the
-  /// march; identity where it is not known.
-  virtual Matrix linear_update() const { return Matrix::Identity(size(), size()); }
+  /// march; empty where it is not known.
+  virtual Matrix linear_update() { return {}; }
 };
+
+/// (I - E^steps)^-1; empty where that is nearly singular: a motion that nothing damps.
+Matrix resolvent_of_power(const Matrix& propagator, int steps);
 
 }  // namespace rubato::integrate

@@ -118,6 +118,33 @@ Vector root_mean_square(const Matrix& value) {
   return result;
 }
 
+Vector unresolved_ringing(const PeriodRecord& record) {
+  constexpr double least_part = 0.1;
+  const auto steps = static_cast<double>(record.steps);
+  const double cube = 2.0 * std::numbers::pi * std::numbers::pi / (3.0 * steps * steps);  // w_j = cube j^3
+  const auto last = std::min<Index>(record.steps / 2 - 1, static_cast<Index>(std::cbrt(1.0 / cube)));
+  Vector result = Vector::Zero(record.position.rows());
+  std::vector<std::complex<double>> turns(static_cast<std::size_t>(record.steps));
+  for (Index i = 0; i < record.steps; ++i)
+    turns[static_cast<std::size_t>(i)] = std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(i) / steps);
+  for (Index row = 0; row < result.size(); ++row) {
+    const auto samples = record.position.row(row).head(record.steps);
+    const double mean = samples.mean();
+    double rest = (samples.array() - mean).square().mean(), uncertain = 0.0;
+    const double round_off = 1e-14 * rest;
+    for (Index j = 1; j <= last; ++j) {
+      std::complex<double> sum = 0.0;
+      for (Index i = 0; i < record.steps; ++i)
+        sum += (samples[i] - mean) * turns[static_cast<std::size_t>((i * j) % record.steps)];
+      const double size = 2.0 * std::abs(sum) / steps, part = cube * std::pow(static_cast<double>(j), 3);
+      rest -= 0.5 * size * size;
+      if (part > least_part) uncertain += part * size;
+    }
+    result[row] = uncertain + (rest > round_off ? std::sqrt(2.0 * rest) : 0.0);
+  }
+  return result;
+}
+
 void read_record(const PeriodRecord& record, const Excitation& excitation, const Vector& slider_stiffness, int periods,
                  const SteadyRequest& request, SteadyResponse& response) {
   const Index observed = record.position.rows(), steps = record.steps;

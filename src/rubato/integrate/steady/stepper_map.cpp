@@ -10,6 +10,8 @@
 namespace rubato::integrate {
 namespace {
 
+constexpr Index largest_known = 160;  // numbers in a state, beyond which a power of the step costs more than it saves
+
 system::LoadTerm term_of(const Vector& weights, double angular_frequency, double phase) {
   system::LoadTerm term;
   term.law = model::HarmonicLaw{1.0, angular_frequency, phase};
@@ -76,6 +78,28 @@ class StepperMap final : public PeriodMap {
     write_state(consistent_start(*system_, std::move(start)), states, lane);
   }
 
+  double observed_size(const LaneArray& differences, Index lane) const override {
+    double size = 0.0;
+    for (const auto& observed : request_.observed)
+      size = std::max(size, std::hypot(observe(observed, differences.col(lane).segment(0, n_)),
+                                       observe(observed, differences.col(lane).segment(n_, n_))));
+    return size;
+  }
+
+  Matrix linear_update() override {
+    if (size() > largest_known) return {};
+    const Matrix step = propagator();
+    if (step.size() == 0) return {};
+    const Matrix inverse = resolvent_of_power(step, steps_);
+    if (inverse.size() == 0) return {};
+    Matrix update = Matrix::Identity(size(), size());
+    // In a state the slips stand between v and A.
+    const auto row_of = [&](Index i) { return i < 2 * n_ ? i : i + m_; };
+    for (Index j = 0; j < inverse.cols(); ++j)
+      for (Index i = 0; i < inverse.rows(); ++i) update(row_of(i), row_of(j)) = inverse(i, j);
+    return update;
+  }
+
  private:
   void write_state(const system::State& state, LaneArray& states, Index lane) const {
     auto x = states.col(lane);
@@ -98,6 +122,35 @@ class StepperMap final : public PeriodMap {
       from_.slider_force[i] = std::clamp(trial, -limit, limit);
     }
     if (carries_acceleration_) from_.auxiliary_acceleration = omega_ * omega_ * x.segment(2 * n_ + m_, n_);
+  }
+
+  // The step without sliders and loads on unit states.
+  Matrix propagator() const {
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = structure_.mass();
+    parts.damping = structure_.damping();
+    parts.stiffness = structure_.stiffness();
+    parts.coordinates = structure_.coordinates();
+    const system::LocallyNonlinear linear(std::move(parts));
+    const auto stepper = make_stepper(method_, linear);
+    const double units[] = {1.0, omega_, omega_ * omega_}, h = period_ / steps_;
+    const Index width = carries_acceleration_ ? 3 : 2;
+    system::State from = linear.start(), to = from;
+    Matrix result(width * n_, width * n_);
+    for (Index c = 0; c < width; ++c)
+      for (Index k = 0; k < n_; ++k) {
+        from.t = 0.0;
+        from.q = from.v = Vector::Zero(n_);
+        if (carries_acceleration_) from.auxiliary_acceleration = Vector::Zero(n_);
+        (c == 0 ? from.q : c == 1 ? from.v : from.auxiliary_acceleration)[k] = units[c];
+        to = from;
+        auto column = result.col(c * n_ + k);
+        if (stepper->attempt(from, h, h, to).outcome != StepOutcome::accepted) return {};
+        column.segment(0, n_) = to.q;
+        column.segment(n_, n_) = to.v / omega_;
+        if (carries_acceleration_) column.segment(2 * n_, n_) = to.auxiliary_acceleration / (omega_ * omega_);
+      }
+    return result;
   }
 
   double stiffness(Index slider) const { return structure_.sliders()[static_cast<std::size_t>(slider)].stiffness; }

@@ -17,7 +17,8 @@ std::unique_ptr<PeriodMap> make_stepper_map(const Method& method, const system::
 system::LocallyNonlinear with_excitation(const system::LocallyNonlinear& system, const Excitation& excitation);
 
 /// The value of an observed quantity in the motion of all coordinates.
-inline double observe(const SteadyRequest::Observed& observed, const Vector& motion) {
+template <class Motion>
+double observe(const SteadyRequest::Observed& observed, const Motion& motion) {
   return (observed.first == ground ? 0.0 : motion[observed.first]) -
          (observed.second == ground ? 0.0 : motion[observed.second]);
 }
