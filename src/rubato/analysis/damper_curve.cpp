@@ -90,13 +90,19 @@ class Tables {
       writer->append({rows.data() + place, width});
   }
 
-  std::string certificate() const {
+  double of_optimum(const std::string& variable) const {
     std::size_t place = 0;
     for (const auto& block : layouts_.optimum().blocks) {
-      if (block.variable == "kind") break;
+      if (block.variable == variable) break;
       place += block.width();
     }
-    switch (static_cast<Optimum::Kind>(last_optimum_[place])) {
+    return last_optimum_[place];
+  }
+
+  std::string certificate() const {
+    const bool is_cut = static_cast<Peak::Kind>(of_optimum("place")) != Peak::Kind::interior;
+    if (is_cut) return ", at an end of the frequencies: widen them";
+    switch (static_cast<Optimum::Kind>(of_optimum("kind"))) {
       case Optimum::Kind::smooth:
         return ", where both derivatives vanish";
       case Optimum::Kind::kink:

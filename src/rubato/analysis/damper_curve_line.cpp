@@ -66,7 +66,8 @@ void count_value(const DamperValue& value, double number, DamperCurveCounts& cou
     counts.negative_loads += 1.0;
     note(counts.first_negative);
   }
-  if (value.status == PointStatus::converged && value.peaks.front().kind != Peak::Kind::interior) {
+  if (value.status == PointStatus::converged && value.peaks.front().kind != Peak::Kind::interior &&
+      value.peaks.front().value > 0.0) {
     counts.at_ends += 1.0;
     note(counts.first_end);
   }
@@ -136,7 +137,9 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
     // However high the peaks beside it are: this one is infinite.
     value.status = PointStatus::unbounded;
     value.peaks = {{0, value.scan.first_unbounded, HUGE_VAL, 0.0, Peak::Kind::interior}};
-    value.response = family.response_at(parameter, value.scan.first_unbounded);
+    value.response = {};
+    value.response.amplitude = Vector::Constant(static_cast<Index>(family.observed()), HUGE_VAL);
+    value.response.residual = value.response.error = nothing;
   } else if (!value.peaks.empty()) {
     value.response = family.response_at(parameter, value.peaks.front().at);
     value.status = point_status(value.response.status);

@@ -93,24 +93,27 @@ void plan_objective(DamperCurvePlan& plan, const Description& description, const
   plan.request.rates = false;
 }
 
-/// The ends of the curve can be made; what lies between is judged as it is reached.
-void require_ends(const DamperCurvePlan& plan, const StudyInput& input) {
+/// One end of the curve can be made at least; what else can is judged as it is reached.
+void require_ends(const DamperCurvePlan& plan, const StudyInput& input, const std::string& title,
+                  const Location& where) {
   std::vector<std::size_t> places = plan.sweep.places();
   places.push_back(plan.place);
   ParametricExcitation at(input, plan.dependence, places, plan.excitation);
   std::vector<double> values(places.size());
-  for (const long line : {0L, plan.sweep.lines() - 1}) {
-    plan.sweep.values(line, {values.data(), values.size() - 1});
+  Possibility possibility(title, where);
+  for (const long line : {0L, plan.sweep.lines() - 1})
     for (const double value : {plan.values.front(), plan.values.back()})
-      for (const double frequency : {plan.from, plan.to}) {
-        values.back() = value;
-        const double point = plan.excitation_factor * frequency;
-        const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
-        integrate::Excitation excitation;
-        at.take_line(values, structure);
-        at.take_point(point, excitation);
-      }
-  }
+      for (const double frequency : {plan.from, plan.to})
+        possibility.attempt([&] {
+          plan.sweep.values(line, {values.data(), values.size() - 1});
+          values.back() = value;
+          const double point = plan.excitation_factor * frequency;
+          const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
+          integrate::Excitation excitation;
+          at.take_line(values, structure);
+          at.take_point(point, excitation);
+        });
+  possibility.require();
 }
 
 }  // namespace
@@ -162,7 +165,7 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
         fmt::format("{}damper curves are refined on exact periodic orbits, for up to {} coordinates; the model has "
                     "{}: reduce it, or sweep a frequency_response with solver = \"harmonic_balance\" over \"{}\"",
                     title, integrate::largest_exact, input.system.size(), plan.parameter));
-  require_ends(plan, input);
+  require_ends(plan, input, title, where);
   return plan;
 }
 

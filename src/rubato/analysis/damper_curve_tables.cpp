@@ -143,6 +143,8 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
 
   std::vector<Block> optimum = blocks;
   optimum.insert(optimum.end(), rest.begin(), rest.end());
+  optimum.push_back(words("place", "of the largest: within the frequencies, or at an end of them", places()));
+  optimum.push_back(words("status", "what became of the largest", status_words()));
   optimum.push_back(words("kind", "of its certificate", kinds()));
   optimum.push_back(scalar("derivative", "", "of the objective by the parameter, of the peak"));
   optimum.push_back(scalar("slope", "", "of the objective by the angular frequency, at the peak"));
@@ -212,6 +214,8 @@ void DamperCurveTables::add_optimum(std::span<const double> line, const Optimum&
   rows.push_back(optimum.parameter);
   add_response(optimum.active.front(), response, rows);
   const bool is_kink = optimum.active.size() == 2;
+  rows.push_back(static_cast<double>(optimum.active.front().kind));
+  rows.push_back(static_cast<double>(point_status(response.status)));
   rows.insert(rows.end(), {static_cast<double>(optimum.kind), optimum.derivative[0], optimum.active.front().slope,
                            optimum.kind == Optimum::Kind::smooth ? optimum.curvature : nothing, optimum.multiplier[0]});
   const Peak& other = optimum.active.back();

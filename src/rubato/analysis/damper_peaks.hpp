@@ -47,6 +47,8 @@ class DamperPeaks final : public PeakFamily {
     std::size_t negative_slider = 0;
   };
   const Scan& scan() const { return scan_; }
+  /// How many amplitudes there are.
+  std::size_t observed() const { return plan_.observed.size(); }
   /// Points solved since it was made.
   double solves() const { return solves_; }
 

@@ -154,25 +154,28 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
   }
 }
 
-/// The first and the last point can be made; what lies between is judged as it is reached.
-void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
+/// One of the first and last points can be made at least; which others can is judged as they are reached.
+void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const std::string& title,
+                  const Location& where) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
   if (plan.route.kind == SteadyRoute::Kind::time_marching) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
-  for (const long line : {0L, plan.sweep.lines() - 1}) {
-    plan.sweep.values(line, values);
-    for (const double frequency : {plan.frequencies.front(), plan.frequencies.back()}) {
-      const double point = plan.excitation_factor * frequency;
-      const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
-      integrate::Excitation excitation;
-      at.take_line(values, structure);
-      at.take_point(point, excitation);
-      if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
-      if (at.has_period() && !excitation.harmonics.empty())
-        plan.route.linear.highest =
-            std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
-    }
-  }
+  Possibility possibility(title, where);
+  for (const long line : {0L, plan.sweep.lines() - 1})
+    for (const double frequency : {plan.frequencies.front(), plan.frequencies.back()})
+      possibility.attempt([&] {
+        plan.sweep.values(line, values);
+        const double point = plan.excitation_factor * frequency;
+        const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
+        integrate::Excitation excitation;
+        at.take_line(values, structure);
+        at.take_point(point, excitation);
+        if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
+        if (at.has_period() && !excitation.harmonics.empty())
+          plan.route.linear.highest =
+              std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
+      });
+  possibility.require();
 }
 
 }  // namespace
@@ -199,7 +202,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   plan_route(plan, description, input, title, where);
   plan_request(plan, description, input, title, where);
   plan_waveforms(plan, description, input, title, where);
-  require_ends(plan, input);
+  require_ends(plan, input, title, where);
   plan.route.linear.points = static_cast<Index>(plan.frequencies.size());
   return plan;
 }

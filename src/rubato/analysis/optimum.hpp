@@ -19,7 +19,8 @@ class PeakFamily {
   virtual std::optional<Peak> follow(double parameter, const Peak& known) = 0;
 };
 
-/// The parameter with the lowest (or highest) F, and what certifies it.
+/// The parameter with the lowest (or highest) F, and what certifies it. Where an active peak lies at an end of the
+/// range of x, the certificate is that of F over this range: its slope over x does not vanish (Peak::kind says so).
 struct Optimum {
   enum class Kind {
     smooth,       ///< one peak, whose derivatives to x and to p vanish

@@ -81,6 +81,11 @@ std::size_t excitation_parameter(const NamedParameter& wanted, const VariedParam
   return chosen;
 }
 
+void Possibility::require() const {
+  if (is_possible_ || !fault_) return;
+  throw InvalidInput(place(fault_->where(), where_), title_ + fault_->message());
+}
+
 ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size_t> varied) {
   for (std::size_t i = 0; i < input.parameters.size(); ++i)
     if (std::any_of(input.overrides.begin(), input.overrides.end(),

@@ -3,7 +3,9 @@
 #include <rubato/analysis/parameter_dependence.hpp>
 #include <rubato/analysis/study_input.hpp>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 // What the plans of steady responses have in common. Messages begin with `title`.
@@ -36,5 +38,28 @@ ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size
 /// @param kind  what it is called: "swept parameter"
 void require_effect(const ParameterDependence& dependence, std::size_t parameter, const NamedParameter& named,
                     const std::vector<std::string>& columns, const std::string& kind, const std::string& title);
+
+/// Whether any of some points of a plan can be made. Where none can, the first says why.
+class Possibility {
+ public:
+  Possibility(std::string title, Location where) : title_(std::move(title)), where_(std::move(where)) {}
+  template <typename Make>
+  void attempt(Make&& make) {
+    try {
+      make();
+      is_possible_ = true;
+    } catch (const InvalidInput& fault) {
+      if (!fault_) fault_ = fault;
+    }
+  }
+  /// Throws InvalidInput, at the place of the first fault or at the analysis, unless an attempt was successful.
+  void require() const;
+
+ private:
+  std::string title_;
+  Location where_;
+  std::optional<InvalidInput> fault_;
+  bool is_possible_ = false;
+};
 
 }  // namespace rubato::analysis

@@ -38,7 +38,8 @@ double fundamental_of(const std::vector<double>& frequencies) {
   if (const auto found = common_fundamental(frequencies)) return *found;
   throw InvalidInput(fmt::format(
       "the forces have no common period: their angular frequencies ({:.6g} to {:.6g} rad/s) are no multiples of one "
-      "fundamental up to its harmonic {}; choose commensurate frequencies, or solver = \"time_marching\"",
+      "fundamental up to its harmonic {}; choose commensurate frequencies, or a frequency_response with solver = "
+      "\"time_marching\"",
       *std::min_element(frequencies.begin(), frequencies.end()),
       *std::max_element(frequencies.begin(), frequencies.end()), most_harmonics));
 }

@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 using Outcome = CondensedStructure::Outcome;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Index most_patterns = 32;  // of loads, before those of old points are forgotten
 constexpr int most_left_out = 8;     // orders that the error estimate looks at
 // The estimate is linear in what is left out, and ends somewhere. Errors over the bare estimate: at most 1.43 (median
@@ -53,6 +53,10 @@ struct HarmonicBalanceSolver::Implementation {
     past.clear();
     remembered_offsets = Vector::Zero(stiffness.size());
     count_wanted = 1;
+    // The basis of the loads has grown with those before; what is kept of it would show in the last digits.
+    patterns.resize(system.size(), 0);
+    loads.clear();
+    harmonics.clear();
   }
 
   void take_loads(const Excitation& excitation);
@@ -299,8 +303,8 @@ bool HarmonicBalanceSolver::Implementation::newton(const Excitation& excitation,
   if (!outcome.has_converged) {
     start_stuck();
     const bool done = lower_the_limits(excitation, response.iterations);
-    eq.set(harmonics, excitation.limits, offsets);
     if (!done) start_stuck();
+    eq.set(harmonics, excitation.limits, offsets);
     outcome = eq.solve(series, options.residual_tolerance, most_iterations);
     response.iterations += outcome.iterations;
   }
@@ -430,10 +434,13 @@ void HarmonicBalanceSolver::Implementation::fill_unbounded(SteadyResponse& respo
   response.amplitude = Vector::Constant(o, infinity);
   response.velocity_amplitude = response.acceleration_amplitude =
       request.rates ? Vector::Constant(o, infinity) : Vector();
-  response.mean = Vector::Zero(o);
+  response.residual = response.error = infinity;
+  response.mean = Vector::Constant(o, nan);
   response.rms = Vector::Constant(o, infinity);
-  response.harmonics = ComplexMatrix::Constant(o, static_cast<Index>(request.harmonics.size()), infinity);
-  response.dissipated = response.slip_share = response.offset = Vector::Zero(m);
+  response.harmonics = ComplexMatrix::Constant(o, static_cast<Index>(request.harmonics.size()), {infinity, nan});
+  response.dissipated = response.slip_share = response.offset = Vector::Constant(m, nan);
+  response.viscous_work = response.input_work = nan;
+  response.transitions = 0;
 }
 
 void HarmonicBalanceSolver::Implementation::fill(const Excitation& excitation, SteadyResponse& response) {
