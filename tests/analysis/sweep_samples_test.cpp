@@ -104,7 +104,9 @@ TEST(SobolDirections, ComeFromPrimitivePolynomialsInOrderWithOddNumbersBelowThei
     for (std::uint64_t prime = 2; prime <= order; ++prime) {
       bool is_prime = true;
       for (std::uint64_t d = 2; d * d <= prime; ++d) is_prime = is_prime && prime % d != 0;
-      if (is_prime && order % prime == 0) EXPECT_NE(power_of_x(order / prime, axis.polynomial), 1u) << axis.polynomial;
+      if (is_prime && order % prime == 0) {
+        EXPECT_NE(power_of_x(order / prime, axis.polynomial), 1u) << axis.polynomial;
+      }
     }
     for (int j = 0; j < degree; ++j) {
       EXPECT_EQ(axis.start[static_cast<std::size_t>(j)] % 2u, 1u);

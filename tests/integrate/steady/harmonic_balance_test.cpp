@@ -137,8 +137,9 @@ TEST(HarmonicBalance, AgreesWithTheExactFlowWhereNothingIsSymmetric) {
     for (Index i = 0; i < 3; ++i) {
       EXPECT_NEAR(r.amplitude[i], exact.amplitude[i], 1.1e-5 * exact.amplitude.maxCoeff()) << limit << " " << i;
       // Where a slider sticks for good the mean depends on where it came to stick.
-      if (r.slip_share.minCoeff() > 0.0)
+      if (r.slip_share.minCoeff() > 0.0) {
         EXPECT_NEAR(r.mean[i], exact.mean[i], 1.1e-5 * exact.amplitude.maxCoeff()) << limit << " " << i;
+      }
     }
     expect_balance(r);
   }

@@ -117,7 +117,8 @@ double ExactFlow::next_event(double length, Index& slider) {
       s = first_exit({path_.data(), u.size()}, -slip, slip, reach);
     } else {  // its slip comes to rest
       const double outward = sign(state);
-      for (std::size_t k = 0; k + 1 < u.size(); ++k) path_[k] = outward * static_cast<double>(k + 1) * u[k + 1];
+      double factor = outward;
+      for (std::size_t k = 0; k + 1 < u.size(); ++k, factor += outward) path_[k] = factor * u[k + 1];
       for (std::size_t k = 1; k < order; ++k) path_[k - 1] = 0.0;
       s = first_exit({path_.data(), u.size() - 1}, 0.0, HUGE_VAL, reach);
     }

@@ -9,7 +9,7 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr std::size_t samples = 8, most_terms = 32;
+constexpr std::size_t samples = 8, most_terms = 32, most_ranges = 3;
 
 struct Point {
   double at = 0.0, value = 0.0, slope = 0.0;
@@ -68,6 +68,22 @@ RUBATO_CLONES void sample(const double* c, std::size_t terms, double length, Sam
   result = {at, even + at * odd, odd + 2.0 * at * (even_slope + at * odd_slope)};
 }
 
+// The polynomial and its first three derivatives at the samples.
+RUBATO_CLONES void sample_derivatives(const double* c, std::size_t terms, double length, Samples::Lanes* result) {
+  Samples::Lanes at, value{}, first{}, second{}, third{};
+  for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
+  for (std::size_t k = terms; k-- > 0;) {  // derivatives over 1!, 2!, 3!
+    third = third * at + second;
+    second = second * at + first;
+    first = first * at + value;
+    value = value * at + c[k];
+  }
+  result[0] = value;
+  result[1] = first;
+  result[2] = 2.0 * second;
+  result[3] = 6.0 * third;
+}
+
 // Where the cubic with the values and slopes of both ends vanishes, nearly: three steps of Newton from the secant.
 double cubic_guess(const Point& low, const Point& high) {
   const double width = high.at - low.at, rise = high.value - low.value;
@@ -86,8 +102,8 @@ double cubic_guess(const Point& low, const Point& high) {
 
 // Newton inside a bracket, bisection where it leaves it: the value is not negative at low, and negative at high. A step
 // of Newton that is small, and as small against the one before as quadratic convergence makes it, leaves an error of
-// step^3/before^2.
-double zero(std::span<const double> c, double low, double high, double s) {
+// step^3/before^2; one is allowed relative to high.
+double zero(std::span<const double> c, double low, double high, double s, double error = 1e-17) {
   if (!(s > low && s < high)) s = 0.5 * (low + high);
   double before = 0.0;
   for (int i = 0; i < 100; ++i) {
@@ -97,7 +113,7 @@ double zero(std::span<const double> c, double low, double high, double s) {
     if (step <= 1e-16 * high) return s;
     (p.value < 0.0 ? high : low) = s;
     const bool inside = next > low && next < high;  // also where the slope is zero
-    if (inside && step <= 1e-8 * high && step * step * step <= 1e-17 * high * before * before) return next;
+    if (inside && step <= 1e-5 * high && step * step * step <= error * high * before * before) return next;
     if (!inside) next = 0.5 * (low + high);
     if (high - low <= 1e-16 * high) return next;
     before = inside ? step : 0.0;
@@ -137,13 +153,15 @@ double crossing(std::span<const double> c, double edge, double sign, Point low, 
   return zero(margin, low.at, high.at, cubic_guess(low, high));
 }
 
-// Where the slope of p vanishes, which is positive at `low` and negative at `high`, or the reverse.
+// Where the slope of p vanishes, which is positive at `low` and negative at `high`, or the reverse. The value there has
+// the square of the error.
 double extremum(std::span<const double> c, const Point& low, const Point& high) {
   std::array<double, most_terms> slope;
   const double sign = low.slope > 0.0 ? 1.0 : -1.0;
-  for (std::size_t k = 0; k + 1 < c.size(); ++k) slope[k] = sign * static_cast<double>(k + 1) * c[k + 1];
+  double factor = sign;
+  for (std::size_t k = 0; k + 1 < c.size(); ++k, factor += sign) slope[k] = factor * c[k + 1];
   const double secant = low.at + (high.at - low.at) * low.slope / (low.slope - high.slope);
-  return zero({slope.data(), c.size() - 1}, low.at, high.at, secant);
+  return zero({slope.data(), c.size() - 1}, low.at, high.at, secant, 1e-9);
 }
 
 }  // namespace
@@ -175,29 +193,45 @@ double first_exit(std::span<const double> c, double lower, double upper, double 
   return -1.0;
 }
 
-void include_range(std::span<const double> c, double length, double& low, double& high) {
+void include_ranges(std::span<const double> c, double length, std::span<ValueRange> ranges) {
+  assert(ranges.size() <= most_ranges && c.size() <= most_terms);
   if (c.empty()) return;
-  Samples sampled;
-  sample(c.data(), c.size(), length, sampled);
-  Point before{0.0, c[0], c.size() > 1 ? c[1] : 0.0};
-  low = std::min(low, before.value);
-  high = std::max(high, before.value);
-  for (std::size_t i = 0; i < samples; ++i) {
-    const Point next = sampled[i];
-    low = std::min(low, next.value);
-    high = std::max(high, next.value);
-    if (before.slope * next.slope < 0.0) {
-      // Where the tangents of both ends meet lies beyond the extremum between them.
-      const double meet =
-          (next.value - before.value - next.slope * (next.at - before.at)) / (before.slope - next.slope);
-      const double bound = before.value + before.slope * meet;
-      if (before.slope > 0.0 ? bound > high : bound < low) {
-        const double extreme = polynomial(c, extremum(c, before, next));
-        low = std::min(low, extreme);
-        high = std::max(high, extreme);
+  std::array<Samples::Lanes, most_ranges + 1> sampled;  // of the polynomial and its derivatives
+  Samples first;
+  if (ranges.size() == 1) {
+    sample(c.data(), c.size(), length, first);
+    sampled = {first.value, first.slope};
+  } else {
+    sample_derivatives(c.data(), c.size(), length, sampled.data());
+  }
+  std::array<double, most_terms> storage;
+  std::copy(c.begin(), c.end(), storage.begin());
+  std::span<double> derivative(storage.data(), c.size());
+  for (std::size_t j = 0; j < ranges.size() && !derivative.empty(); ++j) {
+    ValueRange& range = ranges[j];
+    Point before{0.0, derivative[0], derivative.size() > 1 ? derivative[1] : 0.0};
+    range.low = std::min(range.low, before.value);
+    range.high = std::max(range.high, before.value);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const Point next{length * static_cast<double>(i + 1) / samples, sampled[j][i], sampled[j + 1][i]};
+      range.low = std::min(range.low, next.value);
+      range.high = std::max(range.high, next.value);
+      if (before.slope * next.slope < 0.0) {
+        // Where the tangents of both ends meet lies beyond the extremum between them.
+        const double meet =
+            (next.value - before.value - next.slope * (next.at - before.at)) / (before.slope - next.slope);
+        const double bound = before.value + before.slope * meet;
+        if (before.slope > 0.0 ? bound > range.high : bound < range.low) {
+          const double extreme = evaluate(derivative, extremum(derivative, before, next)).value;
+          range.low = std::min(range.low, extreme);
+          range.high = std::max(range.high, extreme);
+        }
       }
+      before = next;
     }
-    before = next;
+    double factor = 1.0;
+    for (std::size_t k = 0; k + 1 < derivative.size(); ++k, factor += 1.0) derivative[k] = factor * derivative[k + 1];
+    derivative = derivative.first(derivative.size() - 1);
   }
 }
 

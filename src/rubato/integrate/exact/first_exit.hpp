@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 
 namespace rubato::integrate {
@@ -11,8 +12,13 @@ namespace rubato::integrate {
 /// @param length        such that the polynomial turns at most once in an eighth of it
 double first_exit(std::span<const double> coefficients, double lower, double upper, double length);
 
-/// Widens [low, high] to the values that a polynomial takes over [0, length]; same conditions.
-void include_range(std::span<const double> coefficients, double length, double& low, double& high);
+struct ValueRange {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+};
+
+/// Widens ranges[j] to the values that the j-th derivative of a polynomial takes over [0, length], for one to three of
+/// them; same conditions.
+void include_ranges(std::span<const double> coefficients, double length, std::span<ValueRange> ranges);
 
 /// sum_k c_k s^k
 double polynomial(std::span<const double> coefficients, double s);

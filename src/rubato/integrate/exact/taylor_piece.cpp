@@ -98,7 +98,6 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
   work_q_.resize(n_);
   set_pattern();
 
-  forcing_.resize(n_, degree);
   q_.resize(n_, degree + 1);
   v_.resize(n_, degree + 1);
   u_.resize(degree + 1, m_);
@@ -114,16 +113,16 @@ void TaylorPiece::set_pattern() {
   for (const Load& load : loads_)
     largest_load_frequency_ = std::max(largest_load_frequency_, std::abs(load.angular_frequency));
   load_length_ = reach / std::max(largest_load_frequency_, 1e-300);
-  growth_.setZero(n_ * degree, 2 * count);
+  growth_.setZero(n_ * degree, count);
   load_start_.resize(2 * count);
   for (Index i = 0; i < count; ++i) {
     const Load& load = loads_[static_cast<std::size_t>(i)];
-    const auto pattern = inverse_mass_.lazyProduct(pattern_.col(i));
-    work_q_.noalias() = pattern;
+    work_q_.noalias() = inverse_mass_.lazyProduct(pattern_.col(i));
     double factor = 1.0;
     for (Index k = 0; k < (load.table ? 2 : degree); ++k) {
-      const bool by_sine = k % 2 == 1, negative = !load.table && (k % 4 == 1 || k % 4 == 2);
-      growth_.col(2 * i + by_sine).segment(k * n_, n_) = (negative ? -factor : factor) * work_q_;
+      const bool negative = !load.table && (k % 4 == 1 || k % 4 == 2);
+      double* growth = growth_.col(i).data() + k * n_;
+      for (Index j = 0; j < n_; ++j) growth[j] = (negative ? -factor : factor) * work_q_[j];
       if (!load.table) factor *= load.angular_frequency * inverse[static_cast<std::size_t>(k)];
     }
   }
@@ -202,8 +201,6 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
 }
 
 void TaylorPiece::set_loads(double t, double end) {
-  auto forcing = forcing_.reshaped().head(n_ * (terms_ - 1));
-  forcing.setZero();
   for (Index i = 0; i < static_cast<Index>(loads_.size()); ++i) {
     const Load& load = loads_[static_cast<std::size_t>(i)];
     double &first = load_start_[2 * i], &second = load_start_[2 * i + 1];
@@ -215,9 +212,7 @@ void TaylorPiece::set_loads(double t, double end) {
       first = model::value(*load.table, t, model::Side::right);
       second = end > t ? (model::value(*load.table, end, model::Side::left) - first) / (end - t) : 0.0;
     }
-    forcing += first * growth_.col(2 * i).head(forcing.size()) + second * growth_.col(2 * i + 1).head(forcing.size());
   }
-  forcing_.col(0).noalias() -= joins_.lazyProduct(offset_);
 }
 
 double TaylorPiece::load_value(Index i, double s) const {
@@ -231,23 +226,28 @@ void TaylorPiece::fill_coefficients() {
   using Column = Eigen::Matrix<double, N, 1>;
   using Square = Eigen::Matrix<double, N, N>;
   const Eigen::Map<const Square> stiffness(operators_->stiffness.data(), n_, n_), damping(damping_.data(), n_, n_);
+  const Index loads = growth_.cols(), stride = growth_.rows();
+  Column forcing = Column::Zero(n_);  // M^-1 (P l_k - B c)
   for (Index k = 0; k + 1 < terms_; ++k) {
-    const Eigen::Map<const Column> q(q_.data() + k * n_, n_), v(v_.data() + k * n_, n_),
-        forcing(forcing_.data() + k * n_, n_);
+    const Eigen::Map<const Column> q(q_.data() + k * n_, n_), v(v_.data() + k * n_, n_);
     Eigen::Map<Column> next_q(q_.data() + (k + 1) * n_, n_), next_v(v_.data() + (k + 1) * n_, n_);
     const double factor = inverse[static_cast<std::size_t>(k)];
-    if constexpr (N != Eigen::Dynamic && N <= 3) {  // nothing but two operations from one velocity to the next
-      const Square scaled_stiffness = factor * stiffness, scaled_damping = factor * damping;
-      const Column elastic = factor * forcing - scaled_stiffness.lazyProduct(q);
-      next_v = elastic - scaled_damping.lazyProduct(v);
-    } else if constexpr (N != Eigen::Dynamic) {
-      const Column elastic = stiffness.lazyProduct(q), viscous = damping.lazyProduct(v);
-      next_v = factor * ((forcing - elastic) - viscous);
-    } else {
+    forcing.setZero();
+    for (Index i = 0; i < loads; ++i)
+      forcing += load_start_[2 * i + k % 2] * Eigen::Map<const Column>(growth_.data() + i * stride + k * n_, n_);
+    if (k == 0) forcing.noalias() -= joins_.lazyProduct(offset_);
+    if constexpr (N == Eigen::Dynamic) {
       next_v = forcing;
       next_v.noalias() -= damping * v;
       next_v.noalias() -= stiffness * q;
       next_v *= factor;
+    } else if constexpr (N <= 3) {  // nothing but two operations from one velocity to the next
+      const Square scaled_stiffness = factor * stiffness, scaled_damping = factor * damping;
+      const Column elastic = factor * forcing - scaled_stiffness.lazyProduct(q);
+      next_v = elastic - scaled_damping.lazyProduct(v);
+    } else {
+      const Column elastic = stiffness.lazyProduct(q), viscous = damping.lazyProduct(v);
+      next_v = factor * ((forcing - elastic) - viscous);
     }
     next_q = factor * v;
   }

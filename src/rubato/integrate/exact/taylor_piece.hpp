@@ -101,11 +101,10 @@ class TaylorPiece {
   const Operators* operators_ = nullptr;
   double length_ = 0.0, load_length_ = 0.0, rate_ = 0.0, start_ = 0.0;
   std::vector<SliderState> states_;
-  // What a load's value and rate of turn, cos and sin of its angle, make of M^-1 P l, by columns of degree in each
-  // column; of a table, its value and slope. [n degree x 2 loads]
+  // What a load makes of M^-1 P l, by columns of degree in each column: times the cosine of its angle in even degrees,
+  // its sine in odd ones; of a table, times its value and slope. [n degree x loads]
   Matrix growth_;
   Vector load_start_;  // these, at the start
-  Matrix forcing_;     // M^-1 (P l_k - B c), by columns of degree
   Matrix q_, v_, u_;   // coefficients by columns of degree; u by columns of slider
   Vector offset_;
   mutable Vector work_q_, work_v_, work_product_;

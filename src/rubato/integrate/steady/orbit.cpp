@@ -36,17 +36,8 @@ void turn_by(double x, const Nodes& offset, Nodes& cosine, Nodes& sine) {
   sine << odd, -odd.reverse();
 }
 
-struct Range {
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  double half_peak_to_peak(bool half) const {
-    return half ? std::max(std::abs(low), std::abs(high)) : 0.5 * (high - low);
-  }
-};
-
-// The derivative of a polynomial, in place.
-std::span<const double> differentiate(std::span<double> c) {
-  for (std::size_t k = 0; k + 1 < c.size(); ++k) c[k] = static_cast<double>(k + 1) * c[k + 1];
-  return c.first(c.size() - 1);
+double half_peak_to_peak(const ValueRange& range, bool half) {
+  return half ? std::max(std::abs(range.low), std::abs(range.high)) : 0.5 * (range.high - range.low);
 }
 
 }  // namespace
@@ -91,12 +82,11 @@ std::span<double> Orbit::difference(const Piece& piece, Index first, Index secon
 }
 
 void Orbit::displacement_range(Index slider, double& low, double& high) const {
-  Range range;
+  ValueRange range;
   const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
   std::array<double, TaylorPiece::degree + 1> storage;
   for (std::size_t i = 0; i < count_; ++i)
-    include_range(difference(pieces_[i], element.first, element.second, storage), pieces_[i].length, range.low,
-                  range.high);
+    include_ranges(difference(pieces_[i], element.first, element.second, storage), pieces_[i].length, {&range, 1});
   low = range.low;
   high = range.high;
 }
@@ -116,20 +106,14 @@ void Orbit::measure_ranges(const SteadyRequest& request, bool half, SteadyRespon
   std::array<double, TaylorPiece::degree + 1> storage;
   for (Index o = 0; o < observed; ++o) {
     const auto& what = request.observed[static_cast<std::size_t>(o)];
-    Range position, velocity, acceleration;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Piece& piece = pieces_[i];
-      const auto c = difference(piece, what.first, what.second, storage);
-      include_range(c, piece.length, position.low, position.high);
-      if (!request.rates) continue;
-      const auto rate = differentiate(c);
-      include_range(rate, piece.length, velocity.low, velocity.high);
-      include_range(differentiate(c.first(rate.size())), piece.length, acceleration.low, acceleration.high);
-    }
-    response.amplitude[o] = position.half_peak_to_peak(half);
+    std::array<ValueRange, 3> ranges;  // of the position, velocity and acceleration
+    for (std::size_t i = 0; i < count_; ++i)
+      include_ranges(difference(pieces_[i], what.first, what.second, storage), pieces_[i].length,
+                     std::span(ranges).first(request.rates ? 3 : 1));
+    response.amplitude[o] = half_peak_to_peak(ranges[0], half);
     if (!request.rates) continue;
-    response.velocity_amplitude[o] = velocity.half_peak_to_peak(half);
-    response.acceleration_amplitude[o] = acceleration.half_peak_to_peak(half);
+    response.velocity_amplitude[o] = half_peak_to_peak(ranges[1], half);
+    response.acceleration_amplitude[o] = half_peak_to_peak(ranges[2], half);
   }
 }
 
