@@ -16,6 +16,7 @@ using OdeState = std::array<double, 10>;  ///< q, then v: disk 1, blade 1, disk 
 
 class DamperProblem {
  public:
+  static constexpr int coordinates = 5, sliders = 2;
   explicit DamperProblem(const system::LocallyNonlinear& system);
 
   /// The right-hand side for the present states of the sliders.
@@ -52,6 +53,7 @@ class DamperProblem {
   void change(int slider, const double* y);
 
   double period() const { return 2.0 * std::acos(-1.0) / omega_; }
+  void drive(double angular_frequency) { omega_ = angular_frequency; }
   int transitions() const { return transitions_; }
 
  private:

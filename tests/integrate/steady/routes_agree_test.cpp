@@ -20,6 +20,10 @@ TimeMarchingOptions marching_of(std::uint64_t seed) {
 // Three routes that share no formula: the exact flow and Newton's method on its period; Fourier series; steps in time.
 // The motion of a damped structure with sliders is unique (two motions never part: the energy of their difference
 // decays), so that their amplitudes must agree, each within the error that it states for itself.
+//
+// Coverage, against `periodic`: the true error is at most 0.76 of what harmonic balance says on this thousand, and at
+// most 0.60 of what time marching says; on 1,260 other seeds, which nobody looked at while the estimates were made,
+// 0.71 and 0.73. All of them converged.
 void expect_agreement(std::uint64_t seed) {
   SCOPED_TRACE(seed);
   const auto system = testing::random_model(seed);

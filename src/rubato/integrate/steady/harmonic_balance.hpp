@@ -4,8 +4,6 @@
 #include <rubato/integrate/steady/hysteresis_loop.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
-#include <Eigen/LU>
-
 #include <memory>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 
@@ -145,7 +143,7 @@ void HarmonicBalanceEquations::solve_linear(const SliderSeries& series, Vector& 
   // A mean position that nothing determines: the least change.
   Matrix jacobian(x.size(), x.size());
   fill_jacobian(series, jacobian);
-  x = jacobian.completeOrthogonalDecomposition().solve(x).eval();
+  solve_by_least_change(jacobian, x);
 }
 
 HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& series, double tolerance,
