@@ -331,8 +331,8 @@ TEST(PeriodicSolver, FindsTheOrbitOfADamperThatOnlyItsContactsHold) {
   parts.damping.coeffRef(4, 4) = 0.0;
   parts.sliders = base.sliders();
   parts.coordinates = base.coordinates();
-  parts.loads = system::Loads(
-      {testing::harmonic(1, 20.0, 7.6), testing::harmonic(3, -8.0, 7.6), testing::harmonic(3, 6.0, 0.0)});
+  parts.loads =
+      system::Loads({testing::harmonic(1, 20.0, 7.6), testing::harmonic(3, -8.0, 7.6), testing::harmonic(3, 6.0, 0.0)});
   const system::LocallyNonlinear system(std::move(parts));
   PeriodicSolver solver(system, {{{1}, {3}, {4}}, {1}, false});
   SteadyResponse response;
