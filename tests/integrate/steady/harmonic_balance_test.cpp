@@ -4,6 +4,7 @@
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <numbers>

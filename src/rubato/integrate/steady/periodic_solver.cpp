@@ -68,12 +68,9 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
       start_(system.start()),
       end_(system.start()) {
   y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
-<<<<<<< HEAD
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
   const Index rigid = (modes.eigenvalues.array() == 0.0).count();
   if (m_ > 0) rigid_ = modes.shapes.leftCols(rigid);
-=======
->>>>>>> flow
   wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
 }
 
