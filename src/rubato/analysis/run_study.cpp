@@ -1,5 +1,6 @@
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>
 
@@ -51,6 +52,11 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
     }
     return outline(plan, system);
   }
+  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
+    (void)equilibrium_of(analysis.name, analysis.where, *equilibrium, system);
+    (void)observed_or_all(equilibrium->observe, system);
+    return {"static equilibrium", 100.0 * static_cast<double>(system.size())};
+  }
   const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
   check_method_study(analysis.name, analysis.where, study, system, parameters);
   return {"method study: errors, orders and curves of each method", 1e7};
@@ -62,6 +68,8 @@ RunReport run_analysis(const model::AnalysisDescription& analysis, const system:
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
     report = run_transient(analysis.name, plan_transient(analysis.name, analysis.where, *transient, system, parameters),
                            system, context);
+  else if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task))
+    report = run_static(analysis.name, analysis.where, *equilibrium, system, context);
   else
     report = run_method_study(analysis.name, std::get<model::MethodStudyDescription>(analysis.task), system, parameters,
                               context);

@@ -1,3 +1,4 @@
+#include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
@@ -97,6 +98,17 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
   }
 }
 
+system::State static_start(const std::string& name, const Location& where, const model::StaticDescription& description,
+                           const system::LocallyNonlinear& system) {
+  const Vector& given = system.start().q;
+  for (Index i = 0; i < given.size(); ++i)
+    if (given[i] != 0.0)
+      throw InvalidInput(where, fmt::format("analysis \"{}\": initial = \"static\" finds the positions, and coordinate "
+                                            "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
+                                            name, system.coordinates()[static_cast<std::size_t>(i)]));
+  return equilibrium_of(name, where, description, system).state;
+}
+
 }  // namespace
 
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters) {
@@ -120,8 +132,26 @@ Observed observed_of(const model::ObservationDescription& description, const sys
                        fmt::format("observe names \"{}\", which is no coordinate{}{}", name, suggestion(name, known),
                                    lacks_spaces ? "; a difference is written with spaces, \"a - b\"" : ""));
   };
-  if (description.second.empty()) return {description.first, index_of(description.first), ground};
-  return {description.first + " - " + description.second, index_of(description.first), index_of(description.second)};
+  const Index first = index_of(description.first);
+  if (description.second.empty()) return {description.first, first, ground, system.is_rotation(first)};
+  const Index second = index_of(description.second);
+  if (system.is_rotation(first) != system.is_rotation(second))
+    throw InvalidInput(description.where,
+                       fmt::format("observe: \"{} - {}\" is the difference of a displacement [m] and "
+                                   "a rotation [rad]",
+                                   description.first, description.second));
+  return {description.first + " - " + description.second, first, second, system.is_rotation(first)};
+}
+
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::LocallyNonlinear& system) {
+  std::vector<Observed> observed;
+  if (wanted)
+    for (const auto& observation : *wanted) observed.push_back(observed_of(observation, system));
+  else
+    for (Index i = 0; i < system.size(); ++i)
+      observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+  return observed;
 }
 
 TransientPlan plan_transient(const std::string& name, const Location& where,
@@ -151,12 +181,9 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);
-  if (description.observe) {
-    for (const auto& observation : *description.observe) plan.observed.push_back(observed_of(observation, system));
-  } else {
-    for (Index i = 0; i < system.size(); ++i)
-      plan.observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground});
-  }
+  plan.observed = observed_or_all(description.observe, system);
+  plan.start = system.start();
+  if (description.initial) plan.start = static_start(name, where, *description.initial, system);
   return plan;
 }
 

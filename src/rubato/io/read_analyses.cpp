@@ -77,6 +77,17 @@ OutputDescription read_output(TomlReader& reader) {
   return output;
 }
 
+/// The [[displacement]]s that are held; all of them unless listed.
+StaticDescription read_static(TomlReader& reader) {
+  StaticDescription equilibrium;
+  std::vector<Location> places;
+  if (const auto names = reader.optional_texts("displacements", &places)) {
+    equilibrium.displacements.emplace();
+    for (std::size_t i = 0; i < names->size(); ++i) equilibrium.displacements->push_back({(*names)[i], "", places[i]});
+  }
+  return equilibrium;
+}
+
 TransientDescription read_transient(TomlReader& reader) {
   TransientDescription transient;
   if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
@@ -92,6 +103,11 @@ TransientDescription read_transient(TomlReader& reader) {
   transient.observe = read_observe(reader);
   transient.energy = reader.optional_bool("energy").value_or(true);
   transient.allow_unstable = reader.optional_bool("allow_unstable").value_or(false);
+  if (reader.optional_word("initial", {"given", "static"}) == "static")
+    transient.initial = read_static(reader);
+  else if (reader.has("displacements"))
+    throw InvalidInput(reader.where("displacements"),
+                       reader.what() + ": displacements are held in the static start; add initial = \"static\"");
   return transient;
 }
 
@@ -114,8 +130,8 @@ MethodStudyDescription read_method_study(TomlReader& reader) {
 }  // namespace
 
 std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
-  const std::vector<std::string> known{"transient", "method_study"};
-  const std::vector<std::string> planned{"frequency_response", "damper_curve", "modes", "static"};
+  const std::vector<std::string> known{"transient", "method_study", "static"};
+  const std::vector<std::string> planned{"frequency_response", "damper_curve", "modes"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -138,12 +154,16 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
     if (std::find(planned.begin(), planned.end(), type) != planned.end())
       throw InvalidInput(reader.where("type"),
                          fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study",
+                                     "available: transient, method_study, static",
                                      analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
-    else
+    else if (type == "static") {
+      StaticDescription equilibrium = read_static(reader);
+      equilibrium.observe = read_observe(reader);
+      analysis.task = equilibrium;
+    } else
       analysis.task = read_method_study(reader);
     reader.finish();
     analyses.push_back(std::move(analysis));

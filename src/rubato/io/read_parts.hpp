@@ -10,6 +10,9 @@ namespace rubato::io {
 /// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
 model::ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder);
 
+/// [[node]], [[beam]] ... [[support]], [[displacement]] and [gravity].
+void read_structure(TomlReader& root, model::ModelDescription& model);
+
 /// [[analysis]]
 std::vector<model::AnalysisDescription> read_analyses(TomlReader& root);
 

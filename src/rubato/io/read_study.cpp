@@ -30,13 +30,12 @@ std::string syntax_hint(std::string_view description) {
 
 /// Tables of the study language that this version does not read.
 void refuse_planned_tables(const toml::table& table, const TomlReader& root) {
-  const std::vector<std::string> planned{"node",         "material", "section", "beam",   "support",
-                                         "displacement", "body",     "joint",   "gravity"};
+  const std::vector<std::string> planned{"body", "joint"};
   for (const auto& [key, value] : table)
     if (std::find(planned.begin(), planned.end(), key.str()) != planned.end())
       throw InvalidInput(root.location(key),
-                         fmt::format("[[{}]] is not available in this version, which reads coordinates, springs, "
-                                     "dampers, sliders, forces and [matrices]",
+                         fmt::format("[[{}]] is not available in this version, which reads coordinates, nodes, beams, "
+                                     "springs, dampers, sliders, forces and [matrices]",
                                      key.str()));
 }
 
@@ -58,6 +57,9 @@ void name_by_number(model::StudyDescription& study) {
     if (auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
       if (!transient->observe) continue;
       for (auto& observation : *transient->observe) name_by_number(names, observation);
+    } else if (auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
+      if (!equilibrium->observe) continue;
+      for (auto& observation : *equilibrium->observe) name_by_number(names, observation);
     } else if (auto& observe = std::get<model::MethodStudyDescription>(analysis.task).observe) {
       name_by_number(names, *observe);
     }

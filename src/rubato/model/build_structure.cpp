@@ -181,6 +181,10 @@ class StructureBuilder {
                              : fmt::format("{} \"{}\"", kind, line.name);
   }
 
+  void add_name(const LineDescription& line) {
+    if (!line.name.empty()) lines_.add(line.name, line.where, built_.structure.elements.size());
+  }
+
   /// The ends of a line, which must be two nodes apart.
   std::array<Index, 2> ends_of(const LineDescription& line, const std::string& part) const {
     std::array<Index, 2> ends{};
@@ -221,6 +225,7 @@ class StructureBuilder {
   }
 
   void take_beam(const BeamDescription& beam) {
+    add_name(beam);
     const std::string part = part_of(beam, "beam");
     const std::array<Index, 2> ends = ends_of(beam, part);
     Section section{};
@@ -328,6 +333,7 @@ class StructureBuilder {
   }
 
   void take_truss(const TrussDescription& truss) {
+    add_name(truss);
     const std::string part = part_of(truss, "truss");
     const std::array<Index, 2> ends = ends_of(truss, part);
     Section unused{};
@@ -410,6 +416,7 @@ class StructureBuilder {
   ByName<Index> nodes_{"node"};
   ByName<Material> materials_{"material"};
   ByName<Section> sections_{"section"};
+  ByName<std::size_t> lines_{"element"};  // the first element of each that has a name
   std::vector<NodeState> states_;
 };
 

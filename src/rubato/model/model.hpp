@@ -34,8 +34,9 @@ struct Force {
 };
 
 struct BaseMotion {
-  Vector direction;  ///< [n], dimensionless
-  TimeLaw law;       ///< acceleration of the ground [m/s2]
+  Vector direction;                 ///< of coordinates [n], dimensionless; 0 for those of nodes
+  TimeLaw law;                      ///< acceleration of the ground [m/s2]
+  Axis translation = Axis::Zero();  ///< share of the nodes' translations, of those that a support holds too [-]
 };
 
 struct FullMatrices {
@@ -54,6 +55,12 @@ struct RayleighCoefficients {
 
 using Damping = std::variant<std::monostate, ModalDampingRatios, RayleighCoefficients>;
 
+/// Held in the static start only.
+struct Held {
+  Index coordinate = 0;
+  double value = 0.0;  ///< [N] or [m]; [N m] or [rad] of a rotation
+};
+
 /// A structure of coordinates with values for everything: validated, immutable by convention once built.
 struct Model {
   std::vector<std::string> coordinates;  ///< names, [n]
@@ -66,6 +73,8 @@ struct Model {
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;
   std::vector<Force> forces;
+  std::vector<Held> held_forces, held_displacements;
+  Axis gravity = Axis::Zero();  ///< acts on the nodes [m/s2]
   std::optional<BaseMotion> base_motion;
 
   Index size() const { return static_cast<Index>(coordinates.size()); }

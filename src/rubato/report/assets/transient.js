@@ -164,6 +164,7 @@ function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
   const of = (names) => names.map((name) => variable_of(table, name)).filter((variable) => variable && variable.labels.length);
   const motion = of(["position", "velocity", "acceleration"]);
+  const rotations = of(["angle", "angular_velocity", "angular_acceleration"]);
   const sliders = of(["force", "slip", "displacement"]);
   const ledger = analysis.tables.find((candidate) => candidate.name === "energy");
   if (table.rows === 0) {
@@ -174,6 +175,7 @@ function write_transient(chapter, analysis) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
     if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
   }
+  if (rotations.length) add_section(chapter, "Rotations", history_figure(table, rotations, "Rotations of the nodes"));
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const force = variable_of(table, "force");
@@ -182,11 +184,12 @@ function write_transient(chapter, analysis) {
     }
   }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (table.key_numbers && motion.length + sliders.length) {
+  if (table.key_numbers && motion.length + rotations.length + sliders.length) {
     const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
       "last tenth of the duration. All rows count.";
     const numbers = [];
     if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
+    if (rotations.length) numbers.push(key_numbers(table, rotations, `Rotations of the nodes.${meaning}`));
     if (sliders.length) numbers.push(key_numbers(table, sliders, `Motion and force of the sliders.${meaning}`));
     add_section(chapter, "Key numbers", numbers);
   }
