@@ -20,7 +20,9 @@ struct StudyOptions {
 struct RunOptions {
   StudyOptions study;
   std::filesystem::path folder;  ///< empty: results/ beside the study
-  int jobs = 1;                  ///< analyses at a time
+  int jobs = 0;                  ///< analyses at a time, and threads of a sweep; 0: one analysis, on all cores
+  bool resume = false;           ///< go on where an interrupted run stopped
+  bool yes = false;              ///< run sweeps of any size
   bool quiet = false;
   std::string command;  ///< as it was called, for the provenance
 };

@@ -88,9 +88,12 @@ int main(int argc, char** argv) {
   study_options(run, run_options.study);
   run->add_option("-o,--output", run_options.folder, "folder of the results (default: results/ beside the study)")
       ->type_name("DIR");
-  run->add_option("--jobs", run_options.jobs, "run so many analyses at a time (default: 1)")
+  run->add_option("--jobs", run_options.jobs,
+                  "run so many analyses at a time, and sweeps on so many threads (default: one analysis, on all cores)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
+  run->add_flag("--resume", run_options.resume, "go on where an interrupted sweep stopped");
+  run->add_flag("--yes", run_options.yes, "run sweeps of more than a million points");
   run->add_flag("-q,--quiet", run_options.quiet, "no progress, no messages but errors");
 
   app::StudyOptions check_options;

@@ -66,9 +66,9 @@ PreparedStudy prepare(const StudyOptions& options) {
   model::StudyDescription study = io::read_study(options.study);
   const numerics::Parameters parameters = model::evaluate_parameters(study.parameters, overrides);
   const auto analyses = chosen(study, options.only);
-  PreparedStudy prepared{study, parameters, analyses, {}, assembled(study, parameters)};
+  PreparedStudy prepared{study, overrides, parameters, analyses, {}, assembled(study, parameters)};
   for (const auto& analysis : analyses)
-    prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.system, parameters));
+    prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
   return prepared;
 }
 

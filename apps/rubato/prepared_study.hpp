@@ -13,12 +13,13 @@ namespace rubato::app {
 /// A study read, evaluated, assembled and found possible, with the analyses that are asked for.
 struct PreparedStudy {
   model::StudyDescription description;
-  numerics::Parameters parameters;
+  numerics::Parameters overrides, parameters;
   std::vector<model::AnalysisDescription> analyses;
   std::vector<analysis::AnalysisOutline> outlines;  ///< of each analysis
   system::LocallyNonlinear system;
 
   double expected_bytes() const;
+  analysis::StudyInput input() const { return {description, overrides, parameters, system}; }
 };
 
 /// Throws InvalidInput.

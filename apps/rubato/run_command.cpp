@@ -4,6 +4,7 @@
 #include "progress_bar.hpp"
 
 #include <rubato/core/error.hpp>
+#include <rubato/io/journal_file.hpp>
 #include <rubato/io/output_folder.hpp>
 #include <rubato/io/tee_sink.hpp>
 #include <rubato/io/write_csv.hpp>
@@ -11,6 +12,8 @@
 #include <rubato/report/write_report.hpp>
 
 #include <fmt/format.h>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -31,16 +34,56 @@ std::filesystem::path folder_of(const RunOptions& options) {
   return (beside.empty() ? std::filesystem::path(".") : beside) / "results";
 }
 
+/// Sweeps that nobody would wait for are more often slips of the hand.
+void require_size(const PreparedStudy& study, const RunOptions& options) {
+  constexpr double most_points = 1e6;
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  for (std::size_t i = 0; i < study.analyses.size(); ++i) {
+    const auto& outline = study.outlines[i];
+    const auto& task = study.analyses[i];
+    if (outline.memory > 0.8 * memory)
+      throw InvalidInput(task.where,
+                         fmt::format("analysis \"{}\": a sweep of {:.6g} points keeps {:.3g} GB, and this "
+                                     "machine has {:.3g} GB; observe fewer coordinates, or take fewer points",
+                                     task.name, outline.points, outline.memory / 1e9, memory / 1e9));
+    if (outline.points > most_points && !options.yes)
+      throw InvalidInput(task.where,
+                         fmt::format("analysis \"{}\": the sweep has {:.6g} points, more than a million; say "
+                                     "--yes if that is meant",
+                                     task.name, outline.points));
+  }
+}
+
+/// One journal an analysis that can resume, none for the others.
+using Journals = std::vector<std::unique_ptr<io::JournalFile>>;
+
+Journals open_journals(const PreparedStudy& study, const RunOptions& options, const std::filesystem::path& folder) {
+  Journals journals(study.analyses.size());
+  for (std::size_t i = 0; i < journals.size(); ++i) {
+    const auto& task = study.analyses[i];
+    if (study.outlines[i].points == 0.0) continue;
+    const auto fingerprint = io::fingerprint_of(study.description, study.overrides, task.name);
+    journals[i] = std::make_unique<io::JournalFile>(folder / (task.name + ".resume"), fingerprint, options.resume);
+  }
+  return journals;
+}
+
 /// Runs the analyses of a study, several at a time; each writes tables of its own, so that the results do not depend on
 /// how many. What goes wrong with one is in its report, and those that have not begun are left.
 class Runner {
  public:
-  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink)
-      : study_(study), options_(options), sink_(sink), stop_(stop_on_interrupt()), reports_(study.analyses.size()) {}
+  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink, const Journals& journals)
+      : study_(study),
+        options_(options),
+        sink_(sink),
+        journals_(journals),
+        stop_(stop_on_interrupt()),
+        reports_(study.analyses.size()) {}
 
   /// The report of each analysis; none where it has not begun.
   const std::vector<std::optional<RunReport>>& run() {
-    const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs), reports_.size());
+    const std::size_t jobs =
+        std::min<std::size_t>(static_cast<std::size_t>(std::max(options_.jobs, 1)), reports_.size());
     if (jobs == 1) {
       work(study_.system, false);
       return reports_;
@@ -55,24 +98,26 @@ class Runner {
  private:
   void work(const system::LocallyNonlinear& system, bool has_neighbours) {
     for (std::size_t i = next_++; i < reports_.size() && !is_over_; i = next_++) {
-      reports_[i] = run_one(study_.analyses[i], system, has_neighbours);
+      reports_[i] = run_one(i, system, has_neighbours);
       if (reports_[i]->status == RunStatus::interrupted) is_over_ = true;
     }
   }
 
-  RunReport run_one(const model::AnalysisDescription& task, const system::LocallyNonlinear& system,
-                    bool has_neighbours) {
+  RunReport run_one(std::size_t index, const system::LocallyNonlinear& system, bool has_neighbours) {
+    const model::AnalysisDescription& task = study_.analyses[index];
     ProgressBar progress(options_.quiet, has_neighbours);
-    analysis::RunContext context{sink_, progress, stop_};
+    analysis::RunContext context{sink_, progress, stop_, options_.jobs, journals_[index].get()};
     RunReport report;
     try {
-      report = analysis::run_analysis(task, system, study_.parameters, context);
+      report = analysis::run_analysis(task, {study_.description, study_.overrides, study_.parameters, system}, context);
     } catch (const std::bad_alloc&) {
       report = {RunStatus::failed, "out of memory; observe fewer coordinates, or take a smaller model", {}};
     } catch (const std::exception& fault) {
       report = {RunStatus::failed, fault.what(), {}};
       is_over_ = true;  // what cannot be written now cannot be written later
     }
+    for (const std::string& warning : report.warnings)
+      tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
     if (report.status != RunStatus::done)
       tell(fmt::format("{}: analysis \"{}\" {}: {}", study_.description.file, task.name,
                        report.status == RunStatus::failed ? "failed" : "stopped", report.message));
@@ -82,6 +127,7 @@ class Runner {
   const PreparedStudy& study_;
   const RunOptions& options_;
   results::Sink& sink_;
+  const Journals& journals_;
   const std::atomic<bool>& stop_;
   std::vector<std::optional<RunReport>> reports_;
   std::atomic<std::size_t> next_{0};
@@ -110,17 +156,21 @@ int conclude(const PreparedStudy& study, const std::vector<std::optional<RunRepo
 
 int run(const RunOptions& options) {
   const PreparedStudy study = prepare(options.study);
+  require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
   try {
     io::prepare_output_folder(folder, study.expected_bytes());
+    const Journals journals = open_journals(study, options, folder);
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
                                                   study.description.text, options.command, io::utc_now()});
     for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);
     io::CsvSink csv(folder);
     io::TeeSink sink({&netcdf, &csv});
-    status = conclude(study, Runner(study, options, sink).run(), netcdf);
+    status = conclude(study, Runner(study, options, sink, journals).run(), netcdf);
     netcdf.close();
+    for (const auto& journal : journals)
+      if (journal && status == exit_done) journal->remove();
   } catch (const OutputError& fault) {
     tell(fmt::format("error: {}", fault.what()));
     // HDF5 tries once more to write what it could not as the process ends, and crashes: leave without it.

@@ -25,18 +25,29 @@ TEST(AnalysisError, NamesTheTypesThatThereAre) {
   EXPECT_EQ(verdict_with("\"transient\"", "\"transiant\""),
             "study.toml:39:8: error: analysis \"response\": type cannot be \"transiant\"; did you mean \"transient\"? "
             "(known: "
-            "transient, method_study, static)");
-  for (const std::string type : {"frequency_response", "damper_curve", "modes"})
+            "transient, method_study, modes, frequency_response, static)");
+  for (const std::string type : {"damper_curve"})
     EXPECT_EQ(verdict_with("\"transient\"", "\"" + type + "\""),
               "study.toml:39:8: error: analysis \"response\": the type \"" + type +
-                  "\" is not available in this version; available: transient, method_study, static");
+                  "\" is not available in this version; available: transient, method_study, modes, frequency_response, "
+                  "static");
 }
 
-TEST(AnalysisError, SaysThatStepsAreNotAutomaticYet) {
-  EXPECT_EQ(
-      verdict_with("step = 0.005", "step = { tolerance = 1e-3 }"),
-      "study.toml:40:8: error: analysis \"response\": automatic steps are not available in this version; give the step "
-      "as a number [s]");
+TEST(Analysis, ReadsModes) {
+  const auto with = [](const std::string& keys) {
+    return verdict(edited("type = \"transient\"\nstep = 0.005\nduration = 60.0\n", "type = \"modes\"\n" + keys));
+  };
+  EXPECT_EQ(with(""), "accepted");
+  EXPECT_EQ(with("count = \"N0 / 5\"\nobserve = [\"blade\", \"blade - disk\"]\n"), "accepted");
+  EXPECT_EQ(with("count = 3\n"),
+            "study.toml:40:9: error: analysis \"response\": count is 3, but a model of 2 coordinates has 2 modes");
+  EXPECT_EQ(with("count = 0\n"),
+            "study.toml:40:9: error: analysis \"response\": count must be a whole number of at least 1, got 0");
+  EXPECT_EQ(with("step = 0.1\n"),
+            "study.toml:40:1: error: analysis \"response\" has no key \"step\"; known: name, type, count, observe");
+  EXPECT_EQ(with("observe = [\"balde\"]\n"),
+            "study.toml:40:12: error: observe names \"balde\", which is no coordinate; did you mean \"blade\"? (known: "
+            "disk, blade)");
 }
 
 TEST(AnalysisError, AsksForAStepExceptOfTheExactFlow) {

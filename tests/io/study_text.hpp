@@ -72,7 +72,8 @@ inline std::string verdict(const std::string& text, const std::filesystem::path&
     const auto study = io::read_study_text(text, "study.toml", folder);
     const auto parameters = model::evaluate_parameters(study.parameters);
     const auto system = system::assemble(model::build(study.model, parameters));
-    for (const auto& analysis : study.analyses) (void)analysis::check_analysis(analysis, system, parameters);
+    for (const auto& analysis : study.analyses)
+      (void)analysis::check_analysis(analysis, {study, {}, parameters, system});
     return "accepted";
   } catch (const InvalidInput& fault) {
     return fault.what();

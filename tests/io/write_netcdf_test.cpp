@@ -127,11 +127,12 @@ TEST_F(WriteNetcdf, RowsLieAlongTheirDimensionAndLabelsBearItsName) {
 
 TEST_F(WriteNetcdf, WordsAreFlagsAndWhatIsNotThereIsMissing) {
   NetcdfSink sink(path(), provenance());
-  const double first[] = {1, 2.5, 0}, second[] = {0, std::nan(""), std::nan("")};
+  const double first[] = {1, 2.5, 0}, second[] = {0, std::nan(""), std::nan("")}, third[] = {0, HUGE_VAL, 1};
   {
     const auto rows = sink.open(testing::word_layout());
     rows->append(first);
     rows->append(second);
+    rows->append(third);
   }
   sink.close();
   const Reader file(path());
@@ -144,9 +145,9 @@ TEST_F(WriteNetcdf, WordsAreFlagsAndWhatIsNotThereIsMissing) {
   int flags[2] = {-1, -1};
   nc_get_att_int(group, method, "flag_values", flags);
   EXPECT_THAT(flags, ElementsAre(0, 1));
-  EXPECT_THAT(Reader::values(group, "method", 2), ElementsAre(1, 0));
-  EXPECT_THAT(Reader::values(group, "ratio", 2), ElementsAre(2.5, NC_FILL_DOUBLE));
-  EXPECT_THAT(Reader::values(group, "status", 2), ElementsAre(0, NC_FILL_INT));
+  EXPECT_THAT(Reader::values(group, "method", 3), ElementsAre(1, 0, 0));
+  EXPECT_THAT(Reader::values(group, "ratio", 3), ElementsAre(2.5, NC_FILL_DOUBLE, HUGE_VAL));
+  EXPECT_THAT(Reader::values(group, "status", 3), ElementsAre(0, NC_FILL_INT, 1));
 }
 
 TEST_F(WriteNetcdf, ManyRowsInterruptedByFlushesArriveInOrder) {

@@ -108,6 +108,7 @@ class Report(unittest.TestCase):
             self.browser.log(kind)
         self.browser.call("POST", "/url", {"url": page.as_uri()})
         self.browser.wait("return document.querySelectorAll('figure').length > 0")
+        self.browser.script("document.getElementById('figure-1').scrollIntoView({behavior: 'instant'})")
 
     def tearDown(self):
         complaints = [entry for entry in self.browser.log("browser") if entry["level"] != "INFO"]
@@ -126,7 +127,7 @@ class Report(unittest.TestCase):
             self.browser.script("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})",
                                 f"figure-{number}")
             self.browser.wait(f"const figure = document.querySelector('#figure-{number} .plot');"
-                              "const lines = figure.querySelectorAll('path.js-line, .contourlevel path, path.point');"
+                              "const lines = figure.querySelectorAll('path.js-line, .contourlevel path, path.point, .barlayer path');"
                               "return [...lines].some((line) => (line.getAttribute('d') || '').length > 20)")
             titles = self.browser.script(
                 f"return [...document.querySelectorAll('#figure-{number} .xtitle, #figure-{number} [class*=ytitle]')]"
@@ -179,6 +180,102 @@ class Report(unittest.TestCase):
                 "figure.scrollIntoView({behavior: 'instant'}); return figure.id", name)
             self.assertEqual(self.browser.wait(f"return document.querySelector('#{figure} .xtitle')?.textContent"),
                              "Relative displacement [m]")
+
+    def figure(self, chapter, words):
+        """The number of the figure of a chapter whose caption has these words, drawn."""
+        number = self.browser.script("""
+            const chapter = [...document.querySelectorAll('.chapter')].find((candidate) =>
+              candidate.querySelector('h2').lastChild.textContent === arguments[0]);
+            const figure = [...chapter.querySelectorAll('figure')].find((candidate) =>
+              candidate.querySelector('figcaption').textContent.includes(arguments[1]));
+            figure.scrollIntoView({behavior: 'instant'});
+            return figure.id.replace('figure-', '')""", chapter, words)
+        self.browser.wait(f"return document.querySelector('#figure-{number} .main-svg') !== null")
+        return number
+
+    def legend(self, number):
+        return self.browser.script(f"return [...document.querySelectorAll('#figure-{number} .legendtext')]"
+                                   ".map((entry) => entry.textContent)")
+
+    def titles(self, number):
+        """Titles of the axes and of the colour bar, in the order of the alphabet."""
+        return sorted(self.browser.script(f"return [...document.querySelectorAll('#figure-{number} text')].filter((text) =>"
+                                          "/title$/.test(text.getAttribute('class'))).map((text) => text.textContent)"))
+
+    def choose(self, number, text):
+        self.browser.script("""
+            const tools = document.querySelector(`#figure-${arguments[0]} .tools`);
+            [...tools.querySelectorAll('button')].find((button) => button.textContent === arguments[1]).click()""",
+                            number, text)
+
+    def test_a_sweep_shows_a_curve_a_preload_both_limits_and_what_did_not_converge(self):
+        number = self.figure("preloads", "Responses in the steady state")
+        self.assertEqual(self.legend(number), [
+            "Linear, free", "Linear, stuck", "N0 = 0", "N0 = 0.3", "N0 = 0.8", "N0 = 1.2", "N0 = 4",
+            "Not converged (3)", "Quasi periodic (1)"])
+        self.assertEqual(self.titles(number), ["Angular frequency, Omega [rad/s]", "mass: Amplitude [m]"])
+        crosses = f"return document.querySelectorAll('#figure-{number} .scatterlayer path.point').length"
+        self.assertEqual(self.browser.wait(crosses), 4)
+        alarm = self.browser.script("return [...document.querySelectorAll('.alarm')].map((node) => node.textContent)")
+        self.assertTrue(any("3 not converged, 1 quasi periodic" in text for text in alarm), alarm)
+
+    def test_quantity_observation_and_scale_of_a_response_can_be_chosen(self):
+        number = self.figure("preloads", "Responses in the steady state")
+        self.choose(number, "Velocity amplitude")
+        self.choose(number, "mass - ground")
+        self.assertEqual(self.titles(number)[1], "mass - ground: Velocity amplitude [m/s]")
+        ticks = f"return [...document.querySelectorAll('#figure-{number} .ytick')].map((tick) => tick.textContent)"
+        self.assertIn("0", self.browser.script(ticks))
+        self.choose(number, "Logarithmic")
+        self.browser.wait(ticks.replace(".textContent)", ".textContent).every((text) => text !== '0')"))
+
+    def test_many_curves_are_told_apart_by_a_scale_of_colours(self):
+        number = self.figure("grid", "Responses in the steady state")
+        self.assertEqual(self.titles(number), ["Angular frequency, Omega [rad/s]", "N0 [SI]", "mass: Amplitude [m]"])
+        self.assertEqual(self.legend(number), ["Linear, free", "Linear, stuck"])
+        colors = self.browser.script(f"return new Set([...document.querySelectorAll('#figure-{number} .js-line')]"
+                                     ".map((line) => line.style.stroke)).size")
+        self.assertGreaterEqual(colors, 20)
+        map_number = self.figure("grid", "Amplitude over frequency and parameter")
+        self.browser.wait(f"return document.querySelector('#figure-{map_number} .heatmaplayer image') !== null")
+        self.assertEqual(self.titles(map_number), ["Angular frequency, Omega [rad/s]", "N0 [SI]", "mass amplitude [m]"])
+
+    def test_samples_have_percentile_bands_and_a_distribution(self):
+        number = self.figure("tolerance", "Percentile bands")
+        self.assertEqual(self.legend(number), ["5 to 95 %", "25 to 75 %", "Median"])
+        filled = f"return document.querySelectorAll('#figure-{number} .scatterlayer path.js-fill').length"
+        self.assertEqual(self.browser.wait(filled), 2)
+        number = self.figure("tolerance", "Responses in the steady state")
+        self.assertIn("200 of 400 curves", self.browser.script(f"return document.querySelector('#figure-{number}').textContent"))
+        number = self.figure("tolerance", "Distribution of the largest amplitude")
+        self.assertGreater(self.browser.wait(f"return document.querySelectorAll('#figure-{number} .barlayer path').length"), 10)
+
+    def test_loops_at_chosen_points_are_closed(self):
+        number = self.figure("preloads", "Hysteresis loops at chosen points")
+        self.assertEqual(self.legend(number)[0], "N0 = 0.3, \u03a9 = 0.8 rad/s")
+        ends = self.browser.wait(f"""
+            const plot = document.querySelector('#figure-{number} .plot');
+            return plot.data.map((line) => [line.x[0], line.x.at(-1), line.y[0], line.y.at(-1)])""")
+        self.assertEqual(len(ends), 6)
+        for x_first, x_last, y_first, y_last in ends:
+            self.assertEqual((x_first, y_first), (x_last, y_last))
+
+    def test_the_optimum_is_marked_with_its_value_and_certificate(self):
+        number = self.figure("damper", "Damper curve")
+        note = self.browser.wait(f"return document.querySelector('#figure-{number} .annotation-text')?.textContent")
+        self.assertEqual(note, "N0 = 343.45 m at 7.57 rad/scertificate: kink")
+        self.assertEqual(self.legend(number), ["blade1", "blade2", "Not converged (1)", "Optimum"])
+        text = self.browser.script("return document.querySelector('main').textContent")
+        self.assertIn("Kink: two peaks or coordinates are equal there", text)
+
+    def test_a_mode_is_chosen_and_shown_in_bars_over_the_coordinates(self):
+        number = self.figure("modes", "Shape of a mode")
+        bars = f"return document.querySelectorAll('#figure-{number} .barlayer path').length"
+        self.assertEqual(self.browser.wait(bars), 5)
+        self.choose(number, "Stuck")
+        self.choose(number, "Mode 4")
+        self.browser.wait(f"return document.querySelector('#figure-{number} .ytitle').textContent === "
+                          "'Shape at 8.06226 rad/s [\u2013]'")
 
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))

@@ -1,5 +1,6 @@
 #include <rubato/io/write_netcdf.hpp>
 
+#include "report/sample_responses.hpp"
 #include "report/sample_results.hpp"
 
 #include <algorithm>
@@ -242,10 +243,15 @@ void write_sample_results(const std::filesystem::path& file) {
       "at t = 50.02 s the contact problem did not converge (residual 3.1e-4 after 50 iterations); try a smaller "
       "step or allow_unstable = false");
   add_method_study(sink);
+  add_preload_sweep(sink);
+  add_grid_sweep(sink);
+  add_random_sweep(sink);
+  add_damper_curve(sink);
+  add_modes(sink);
 
   const std::string hostile = "bl\"ade</script><b>\xCE\xA9";
-  results::TableLayout unknown{"frf", "", "angular_frequency", {column("angular_frequency", "rad/s")}, {}};
-  unknown.attributes = {{"type", "frequency_response"}, {"note", hostile}};
+  results::TableLayout unknown{"unknown", "", "angular_frequency", {column("angular_frequency", "rad/s")}, {}};
+  unknown.attributes = {{"note", hostile}};
   unknown.blocks.push_back(column("amplitude", "m", "coordinate", {hostile, "disk"}));
   Rows rows;
   for (double omega = 7.0; omega <= 8.5; omega += 0.01) {
@@ -253,7 +259,7 @@ void write_sample_results(const std::filesystem::path& file) {
     rows.push_back({omega, 1.0 / std::hypot(60.0 - omega * omega, 0.3 * omega), other});
   }
   add_table(sink, unknown, rows);
-  sink.conclude("frf", "done", "", {});
+  sink.conclude("unknown", "done", "", {});
   sink.close();
 }
 

@@ -11,7 +11,7 @@ void StepInterpolation::take(const system::State& before, const system::State& a
   before_ = &before;
   after_ = &after;
   equilibrium_(before, a0_);
-  equilibrium_(after, a1_);
+  equilibrium_(after, a1_, model::Side::left);
 }
 
 void StepInterpolation::at(double t, system::State& state) const {

@@ -26,6 +26,18 @@ std::vector<std::string> labels_of(const std::vector<Observed>& observed) {
 
 }  // namespace
 
+void add_blocks(const std::vector<Observed>& observed, const ColumnNames& of_displacements,
+                const ColumnNames& of_rotations, std::vector<results::Block>& blocks) {
+  const auto add_kind = [&](bool is_rotation, const ColumnNames& names, const char* dimension) {
+    std::vector<std::string> labels;
+    for (const Observed& one : observed)
+      if (one.is_rotation == is_rotation) labels.push_back(one.label);
+    if (!labels.empty()) blocks.push_back({names.variable, names.unit, names.description, dimension, labels});
+  };
+  add_kind(false, of_displacements, "coordinate");
+  add_kind(true, of_rotations, "rotation");
+}
+
 ObservedBlocks::ObservedBlocks(const std::vector<Observed>& observed) {
   for (const Observed& one : observed) (one.is_rotation ? rotations_ : displacements_).push_back(one);
 }
@@ -62,8 +74,7 @@ void SliderBlocks::add(results::TableLayout& layout) const {
   const auto add_kind = [&](const std::vector<Index>& sliders, const Names& force, const Names& slip,
                             const char* dimension) {
     if (sliders.empty()) return;
-    std::vector<std::string> labels;
-    for (const Index i : sliders) labels.push_back(system_.sliders()[static_cast<std::size_t>(i)].name);
+    const std::vector<std::string> labels = labels_of(sliders);
     layout.blocks.push_back({force.variable, force.unit, force.description, dimension, labels});
     layout.blocks.push_back({slip.variable, slip.unit, slip.description, dimension, labels});
   };
@@ -80,6 +91,31 @@ void SliderBlocks::append(const system::State& state, std::vector<double>& row) 
       row.push_back(system_.relative_displacement(i, state.q) -
                     state.slider_force[i] / system_.sliders()[static_cast<std::size_t>(i)].stiffness);
   }
+}
+
+void SliderBlocks::add(const ColumnNames& of_displacements, const ColumnNames& of_rotations,
+                       std::vector<results::Block>& blocks) const {
+  const auto add_kind = [&](const std::vector<Index>& sliders, const ColumnNames& names, const char* dimension) {
+    if (!sliders.empty())
+      blocks.push_back({names.variable, names.unit, names.description, dimension, labels_of(sliders)});
+  };
+  add_kind(of_displacements_, of_displacements, "slider");
+  add_kind(of_rotations_, of_rotations, "rotational_slider");
+}
+
+void SliderBlocks::add(const ColumnNames& names, std::vector<results::Block>& blocks) const {
+  const std::vector<Index> all = order();
+  if (all.empty()) return;
+  const char* dimension = of_rotations_.empty()       ? "slider"
+                          : of_displacements_.empty() ? "rotational_slider"
+                                                      : "any_slider";
+  blocks.push_back({names.variable, names.unit, names.description, dimension, labels_of(all)});
+}
+
+std::vector<std::string> SliderBlocks::labels_of(const std::vector<Index>& sliders) const {
+  std::vector<std::string> labels;
+  for (const Index i : sliders) labels.push_back(system_.sliders()[static_cast<std::size_t>(i)].name);
+  return labels;
 }
 
 std::vector<Index> SliderBlocks::order() const {

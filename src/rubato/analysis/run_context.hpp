@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/results/journal.hpp>
 #include <rubato/results/sink.hpp>
 
 #include <atomic>
@@ -25,6 +26,8 @@ struct RunContext {
   results::Sink& sink;
   Progress& progress;
   const std::atomic<bool>& stop;
+  int threads = 0;                      ///< at most so many, and one a core; 0: one a core
+  results::Journal* journal = nullptr;  ///< where finished pieces are kept; those in it are not computed again
 };
 
 enum class RunStatus { done, failed, interrupted };
@@ -34,6 +37,7 @@ struct RunReport {
   RunStatus status = RunStatus::done;
   std::string message;
   std::vector<std::pair<std::string, std::string>> statistics;  ///< steps, factorisations, ...: kept with the results
+  std::vector<std::string> warnings = {};                       ///< what the user should know of results that are there
 };
 
 }  // namespace rubato::analysis

@@ -1,4 +1,7 @@
+#include <rubato/analysis/frequency_response.hpp>
+#include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/method_study.hpp>
+#include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient.hpp>
@@ -32,48 +35,122 @@ AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinea
     result.summary = fmt::format("transient, {}, {:.0f} steps of {} s to t = {} s", plan.method.name,
                                  std::ceil(plan.duration / plan.step * (1.0 - 1e-12)), plan.step, plan.duration);
   else
-    result.summary = fmt::format("transient, {}, to t = {} s", plan.method.name, plan.duration);
+    result.summary = fmt::format("transient, {}, {}to t = {} s", plan.method.name,
+                                 plan.automatic ? summary(*plan.automatic) + ", " : "", plan.duration);
   return result;
 }
 
-}  // namespace
-
-AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
-                               const numerics::Parameters& parameters) {
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
-    const TransientPlan plan = plan_transient(analysis.name, analysis.where, *transient, system, parameters);
-    if (std::holds_alternative<integrate::Exact>(plan.method.formula)) check_exact_transient(analysis.where, system);
-    if (std::holds_alternative<integrate::Exponential>(plan.method.formula)) {
-      try {
-        (void)integrate::make_stepper(plan.method, system);
-      } catch (const InvalidInput& fault) {
-        throw InvalidInput(analysis.where, fault.message());
-      }
-    }
-    return outline(plan, system);
-  }
-  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
-    (void)equilibrium_of(analysis.name, analysis.where, *equilibrium, system);
-    (void)observed_or_all(equilibrium->observe, system);
-    return {"static equilibrium", 100.0 * static_cast<double>(system.size())};
-  }
-  const auto& study = std::get<model::MethodStudyDescription>(analysis.task);
-  check_method_study(analysis.name, analysis.where, study, system, parameters);
-  return {"method study: errors, orders and curves of each method", 1e7};
+AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::LocallyNonlinear& system) {
+  const auto observed = static_cast<double>(plan.observed.size());
+  const auto sliders = static_cast<double>(system.slider_count());
+  const double columns = static_cast<double>(plan.sweep.names().size()) + 10.0 + 3.0 * sliders +
+                         observed * (5.0 + 2.0 * static_cast<double>(plan.request.harmonics.size()));
+  double kept = 0.0;
+  for (const bool is_kept : plan.waveform_at) kept += is_kept ? 1.0 : 0.0;
+  const double waveforms = static_cast<double>(plan.sweep.lines()) * kept * plan.waveform_points;
+  AnalysisOutline result;
+  result.points = plan.points();
+  result.expected_bytes = 36.0 *  // 8 of them in the journal
+                          (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
+  if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
+  result.summary = fmt::format("frequency response, {}, {} lines of {} points", route_name(plan.route.kind),
+                               plan.sweep.lines(), plan.steps.size());
+  return result;
 }
 
-RunReport run_analysis(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system,
-                       const numerics::Parameters& parameters, RunContext& context) {
-  RunReport report;
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
-    report = run_transient(analysis.name, plan_transient(analysis.name, analysis.where, *transient, system, parameters),
-                           system, context);
-  else if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task))
-    report = run_static(analysis.name, analysis.where, *equilibrium, system, context);
-  else
-    report = run_method_study(analysis.name, std::get<model::MethodStudyDescription>(analysis.task), system, parameters,
-                              context);
-  context.sink.conclude(analysis.name, status_name(report.status), report.message, report.statistics);
+AnalysisOutline outline(const ModesPlan& plan, const system::LocallyNonlinear& system) {
+  const double limits = system.slider_count() > 0 ? 2.0 : 1.0, width = 7.0 + 2.0 * double(plan.observed.size());
+  return {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
+          limits * static_cast<double>(plan.count) * width * 28.0};
+}
+
+/// Calls with the plan of an analysis's own kind: what checks it, or what runs it.
+struct Check {
+  const model::AnalysisDescription& analysis;
+  const StudyInput& input;
+
+  template <typename Attempt>
+  void at_the_analysis(Attempt&& attempt) const {
+    try {
+      attempt();
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(analysis.where, fault.message());
+    }
+  }
+
+  AnalysisOutline operator()(const model::TransientDescription& transient) const {
+    const TransientPlan plan = plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters);
+    if (std::holds_alternative<integrate::Exact>(plan.method.formula))
+      check_exact_transient(analysis.where, input.system);
+    if (std::holds_alternative<integrate::Exponential>(plan.method.formula))
+      at_the_analysis([&] { (void)integrate::make_stepper(plan.method, input.system); });
+    return outline(plan, input.system);
+  }
+
+  AnalysisOutline operator()(const model::MethodStudyDescription& study) const {
+    check_method_study(analysis.name, analysis.where, study, input.system, input.parameters);
+    return {"method study: errors, orders and curves of each method", 1e7};
+  }
+
+  AnalysisOutline operator()(const model::StaticDescription& equilibrium) const {
+    (void)equilibrium_of(analysis.name, analysis.where, equilibrium, input.system);
+    (void)observed_or_all(equilibrium.observe, input.system);
+    return {"static equilibrium", 100.0 * static_cast<double>(input.system.size())};
+  }
+
+  AnalysisOutline operator()(const model::ModesDescription& modes) const {
+    return outline(plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters), input.system);
+  }
+
+  AnalysisOutline operator()(const model::FrequencyResponseDescription& response) const {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
+    at_the_analysis([&] { (void)steady_solvers(plan.route).response(input.system, plan.request); });
+    return outline(plan, input.system);
+  }
+};
+
+struct Run {
+  const model::AnalysisDescription& analysis;
+  const StudyInput& input;
+  RunContext& context;
+
+  RunReport operator()(const model::TransientDescription& transient) const {
+    return run_transient(analysis.name,
+                         plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters),
+                         input.system, context);
+  }
+
+  RunReport operator()(const model::MethodStudyDescription& study) const {
+    return run_method_study(analysis.name, study, input.system, input.parameters, context);
+  }
+
+  RunReport operator()(const model::StaticDescription& equilibrium) const {
+    return run_static(analysis.name, analysis.where, equilibrium, input.system, context);
+  }
+
+  RunReport operator()(const model::ModesDescription& modes) const {
+    return run_modes(analysis.name, plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters),
+                     input.system, context);
+  }
+
+  RunReport operator()(const model::FrequencyResponseDescription& response) const {
+    const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
+    return run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
+  }
+};
+
+}  // namespace
+
+AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  return std::visit(Check{analysis, input}, analysis.task);
+}
+
+RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
+  RunReport report = std::visit(Run{analysis, input, context}, analysis.task);
+  auto notes = report.statistics;
+  for (std::size_t i = 0; i < report.warnings.size(); ++i)
+    notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);
+  context.sink.conclude(analysis.name, status_name(report.status), report.message, notes);
   return report;
 }
 

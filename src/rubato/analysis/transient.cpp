@@ -40,19 +40,22 @@ class TransientObserver final : public integrate::Observer {
     if (plan_.energy) ledger_.add_step(before, after);
     if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
       record(after, after);
-    if (steps_ % steps_a_report_ == 0) context_.progress.advance(static_cast<double>(steps_));
+    if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
     return !context_.stop.load(std::memory_order_relaxed);
   }
 
   /// The state in which the march ended is worth keeping even between outputs.
   void finish(const system::State& state) {
     if (plan_.output == Kind::every && !last_recorded_ && steps_ > 0) record(state, state);
-    context_.progress.advance(static_cast<double>(steps_));
+    context_.progress.advance(progress(state));
   }
 
   long steps() const { return steps_; }
 
  private:
+  /// How many steps there will be is not known of automatic ones.
+  double progress(const system::State& state) const { return plan_.automatic ? state.t : static_cast<double>(steps_); }
+
   void record(const system::State& before, const system::State& now) {
     if (plan_.energy) {
       const Energy energy = ledger_.at(before, now);
@@ -116,6 +119,12 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
       what = "the effective matrix of the step cannot be factorised";
       remedy = "look for a negative stiffness or damping, or take a smaller step";
       break;
+    case integrate::StepOutcome::too_small:
+      what = "the error asked for a step below the smallest";
+      remedy =
+          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller "
+          "step, or a larger tolerance";
+      break;
     case integrate::StepOutcome::accepted:
       break;
   }
@@ -134,7 +143,10 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   system::State state = integrate::consistent_start(system, plan.start);
   RunReport run;
   integrate::MarchReport report;
-  context.progress.begin(name, std::ceil(plan.duration / plan.step), "steps");
+  if (plan.automatic)
+    context.progress.begin(name, plan.duration, "s of motion");
+  else
+    context.progress.begin(name, std::ceil(plan.duration / plan.step), "steps");
   if (!state.auxiliary_acceleration.allFinite()) {
     report.end = integrate::MarchEnd::failed;
     report.step.outcome = integrate::StepOutcome::not_finite;
@@ -143,7 +155,19 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
       if (!std::isfinite(state.auxiliary_acceleration[i])) report.step.worst = i;
   } else {
     observer.start(state);
-    report = integrate::march(*stepper, state, plan.step, plan.duration, &observer);
+    if (plan.automatic) {
+      const auto estimator =
+          integrate::make_estimator(plan.automatic->estimator, plan.method, system, *stepper, plan.duration);
+      StepRecorder tries(name, *plan.automatic, context.sink);
+      const integrate::AdaptiveReport adaptive =
+          integrate::march(*stepper, *estimator, plan.automatic->plan, system, state, plan.duration, &observer, &tries);
+      report = adaptive.march;
+      run.statistics = statistics(adaptive, state.t);
+    } else {
+      report = integrate::march(*stepper, state, plan.step, plan.duration, &observer);
+      run.statistics = {{"steps", std::to_string(report.steps)},
+                        {"factorisations", std::to_string(stepper->factorisations())}};
+    }
     observer.finish(state);
   }
   context.progress.end();
@@ -154,9 +178,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration);
   }
-  run.statistics = {{"steps", std::to_string(report.steps)},
-                    {"factorisations", std::to_string(stepper->factorisations())},
-                    {"rows", std::to_string(recorder.rows())}};
+  run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
   return run;
 }
 

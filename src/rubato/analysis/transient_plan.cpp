@@ -58,8 +58,10 @@ void require_stable(const TransientPlan& plan, const system::LocallyNonlinear& s
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where) {
   plan.output = output.kind;
-  const bool is_exact = plan.step == 0.0;
-  const double steps = is_exact ? 0.0 : std::ceil(plan.duration / plan.step);
+  const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
+  const double steps = is_exact         ? 0.0
+                       : plan.automatic ? plan.automatic->expected_steps
+                                        : std::ceil(plan.duration / plan.step);
   switch (output.kind) {
     case Kind::every_step:
       plan.rows = steps + 1.0;
@@ -151,6 +153,7 @@ std::vector<Observed> observed_or_all(const std::optional<std::vector<model::Obs
   else
     for (Index i = 0; i < system.size(); ++i)
       observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+  std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
   return observed;
 }
 
@@ -162,11 +165,16 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan.method = method_of(description.method, parameters);
   plan.duration = positive(description.duration, parameters, title + "duration", where);
   plan.energy = description.energy;
+  plan.start = system.start();
+  if (description.initial) plan.start = static_start(name, where, *description.initial, system);
   const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
-  if (is_exact && description.step)
-    throw InvalidInput(place(description.step->where, where),
+  if (is_exact && (description.step || description.automatic_step))
+    throw InvalidInput(place(description.step ? description.step->where : description.automatic_step->where, where),
                        title + "the method exact takes no step; remove the key, or choose another method");
-  if (!is_exact) {
+  if (description.automatic_step) {
+    plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, plan.start,
+                                         parameters, plan.duration, description.allow_unstable);
+  } else if (!is_exact) {
     if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
     plan.step = positive(*description.step, parameters, title + "step", where);
     if (plan.step > plan.duration)
@@ -182,8 +190,6 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);
   plan.observed = observed_or_all(description.observe, system);
-  plan.start = system.start();
-  if (description.initial) plan.start = static_start(name, where, *description.initial, system);
   return plan;
 }
 

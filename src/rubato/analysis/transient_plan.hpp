@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/automatic_step.hpp>
 #include <rubato/integrate/method.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
@@ -23,8 +24,9 @@ struct Observed {
 /// A transient with all its values: what the description says, evaluated and found possible.
 struct TransientPlan {
   integrate::Method method;
-  system::State start;    ///< that of the system, or of equilibrium
-  double step = 0.0;      ///< [s]; 0 for `exact`
+  system::State start;  ///< that of the system, or of equilibrium
+  double step = 0.0;    ///< [s]; 0 for `exact` and for an automatic step
+  std::optional<AutomaticStep> automatic;
   double duration = 0.0;  ///< [s]
   std::vector<Observed> observed;
   model::OutputDescription::Kind output = model::OutputDescription::Kind::every_step;
@@ -41,7 +43,7 @@ integrate::Method method_of(const model::MethodDescription& description, const n
 /// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
 Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system);
 
-/// What is asked for, or every coordinate.
+/// What is asked for, or every coordinate: displacements, then rotations.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::LocallyNonlinear& system);
 

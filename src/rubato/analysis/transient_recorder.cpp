@@ -11,6 +11,7 @@ using Attributes = std::vector<std::pair<std::string, std::string>>;
 Attributes attributes_of(const TransientPlan& plan, const system::LocallyNonlinear& system) {
   Attributes attributes{{"type", "transient"}, {"method", plan.method.name}};
   if (plan.step > 0.0) attributes.emplace_back("step", fmt::format("{} s", plan.step));
+  if (plan.automatic) attributes.emplace_back("step", summary(*plan.automatic));
   attributes.emplace_back("duration", fmt::format("{} s", plan.duration));
   if (system.slider_count() > 0) {
     std::vector<double> stiffness, limit;

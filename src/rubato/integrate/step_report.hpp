@@ -11,6 +11,7 @@ enum class StepOutcome {
   not_converged,  ///< the contact problem of the sliders found no consistent set of sticking ones
   not_finite,     ///< a NaN or an infinity appeared
   singular,       ///< the effective matrix of this step cannot be factorised
+  too_small,      ///< the error asks for a step below the smallest (automatic steps)
 };
 
 struct StepReport {

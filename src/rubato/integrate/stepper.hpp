@@ -28,6 +28,14 @@ class Stepper {
     (void)ratio;
   }
 
+  /// The difference of the two solutions of an embedded pair in the last attempt [n]: an error of h^(order + 1) of the
+  /// lower order. Returns false, and writes nothing, where there is no pair.
+  virtual bool embedded_difference(Vector& dq, Vector& dv) const {
+    (void)dq;
+    (void)dv;
+    return false;
+  }
+
   /// Number of factorisations so far.
   virtual int factorisations() const { return 0; }
 };

@@ -1,4 +1,5 @@
 #include <rubato/io/read_parts.hpp>
+#include <rubato/io/read_step.hpp>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,14 @@ namespace rubato::io {
 namespace {
 
 using namespace model;
+
+ObservationDescription to_observation(const std::string& text, const Location& where) {
+  const std::size_t minus = text.find(" - ");
+  if (minus == std::string::npos) return {text, "", where};
+  return {text.substr(0, minus), text.substr(minus + 3), where};
+}
+
+}  // namespace
 
 MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key) {
   MethodDescription method;
@@ -27,12 +36,6 @@ MethodDescription to_method(TomlReader& reader, const toml::node& node, const st
   return method;
 }
 
-ObservationDescription to_observation(const std::string& text, const Location& where) {
-  const std::size_t minus = text.find(" - ");
-  if (minus == std::string::npos) return {text, "", where};
-  return {text.substr(0, minus), text.substr(minus + 3), where};
-}
-
 std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& reader) {
   std::vector<Location> places;
   const auto texts = reader.optional_texts("observe", &places);
@@ -47,6 +50,8 @@ std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& read
   }
   return observations;
 }
+
+namespace {
 
 OutputDescription read_output(TomlReader& reader) {
   OutputDescription output;
@@ -92,11 +97,10 @@ TransientDescription read_transient(TomlReader& reader) {
   TransientDescription transient;
   if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
   if (const toml::node* step = reader.node("step")) {
-    if (step->is_table())
-      throw InvalidInput(
-          reader.location(*step),
-          reader.what() + ": automatic steps are not available in this version; give the step as a number [s]");
-    transient.step = reader.quantity("step");
+    if (const auto* table = step->as_table())
+      transient.automatic_step = read_step(reader, *table);
+    else
+      transient.step = reader.quantity("step");
   }
   transient.duration = reader.quantity("duration");
   transient.output = read_output(reader);
@@ -127,11 +131,18 @@ MethodStudyDescription read_method_study(TomlReader& reader) {
   return study;
 }
 
+ModesDescription read_modes(TomlReader& reader) {
+  ModesDescription modes;
+  modes.count = reader.optional_quantity("count");
+  modes.observe = read_observe(reader);
+  return modes;
+}
+
 }  // namespace
 
-std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
-  const std::vector<std::string> known{"transient", "method_study", "static"};
-  const std::vector<std::string> planned{"frequency_response", "damper_curve", "modes"};
+std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
+  const std::vector<std::string> known{"transient", "method_study", "modes", "frequency_response", "static"};
+  const std::vector<std::string> planned{"damper_curve"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -154,11 +165,15 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root) {
     if (std::find(planned.begin(), planned.end(), type) != planned.end())
       throw InvalidInput(reader.where("type"),
                          fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study, static",
+                                     "available: transient, method_study, modes, frequency_response, static",
                                      analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
+    else if (type == "modes")
+      analysis.task = read_modes(reader);
+    else if (type == "frequency_response")
+      analysis.task = read_frequency_response(reader, folder);
     else if (type == "static") {
       StaticDescription equilibrium = read_static(reader);
       equilibrium.observe = read_observe(reader);

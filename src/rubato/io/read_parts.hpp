@@ -14,7 +14,20 @@ model::ModelDescription read_model(TomlReader& root, const std::filesystem::path
 void read_structure(TomlReader& root, model::ModelDescription& model);
 
 /// [[analysis]]
-std::vector<model::AnalysisDescription> read_analyses(TomlReader& root);
+std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder);
+
+/// The keys of type = "frequency_response".
+model::FrequencyResponseDescription read_frequency_response(TomlReader& reader, const std::filesystem::path& folder);
+
+/// A method's name, or a table of its name and parameters.
+model::MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key);
+
+/// `observe`: coordinates and differences, each once.
+std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReader& reader);
+
+/// A CSV file whose header names parameters and whose rows are numbers; `#` begins a comment.
+model::CaseSweepDescription read_cases(const std::string& file, const std::filesystem::path& folder,
+                                       const Location& where);
 
 /// A CSV file of two columns, time and value; a first line that is no number is a header; `#` begins a comment.
 model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where);

@@ -57,11 +57,14 @@ void name_by_number(model::StudyDescription& study) {
     if (auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
       if (!transient->observe) continue;
       for (auto& observation : *transient->observe) name_by_number(names, observation);
+    } else if (auto* study_of_methods = std::get_if<model::MethodStudyDescription>(&analysis.task)) {
+      if (study_of_methods->observe) name_by_number(names, *study_of_methods->observe);
+    } else if (auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
+      if (!response->observe) continue;
+      for (auto& observation : *response->observe) name_by_number(names, observation);
     } else if (auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
       if (!equilibrium->observe) continue;
       for (auto& observation : *equilibrium->observe) name_by_number(names, observation);
-    } else if (auto& observe = std::get<model::MethodStudyDescription>(analysis.task).observe) {
-      name_by_number(names, *observe);
     }
   }
 }
@@ -148,7 +151,7 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   study.title = root.optional_text("title").value_or(std::filesystem::path(name).stem().string());
   study.parameters = read_parameters(root);
   study.model = read_model(root, folder);
-  study.analyses = read_analyses(root);
+  study.analyses = read_analyses(root, folder);
   root.finish();
   name_by_number(study);
   return study;

@@ -55,7 +55,7 @@ class CsvWriter final : public results::RowWriter {
       if (!first) buffer_ += ',';
       first = false;
       const double value = row[column.place];
-      if (!std::isfinite(value)) continue;
+      if (std::isnan(value)) continue;
       if (column.words) {
         buffer_ += field((*column.words)[static_cast<std::size_t>(value)]);
         continue;

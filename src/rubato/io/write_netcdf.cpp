@@ -144,7 +144,7 @@ class NetcdfWriter final : public results::RowWriter {
                     column_.begin() + static_cast<std::ptrdiff_t>(row * variable.width));
       // A value that is not there is netCDF's fill value, which readers show as missing.
       for (double& value : column_)
-        if (!std::isfinite(value)) value = variable.has_words ? static_cast<double>(NC_FILL_INT) : NC_FILL_DOUBLE;
+        if (std::isnan(value)) value = variable.has_words ? static_cast<double>(NC_FILL_INT) : NC_FILL_DOUBLE;
       const std::size_t start[2] = {rows_, 0}, count[2] = {buffered_, variable.width};
       errno = 0;
       file_->check(nc_put_vara_double(group_, variable.id, start, count, column_.data()));

@@ -17,8 +17,8 @@ using numerics::Parameters;
 /// Looks names up and evaluates numbers, with messages that name the part.
 class Builder {
  public:
-  Builder(const ModelDescription& description, const Parameters& parameters)
-      : description_(description), parameters_(parameters) {}
+  Builder(const ModelDescription& description, const Parameters& parameters, NegativeLoad negative_load)
+      : description_(description), parameters_(parameters), negative_load_(negative_load) {}
 
   Model build() {
     if (description_.matrices)
@@ -51,6 +51,11 @@ class Builder {
     if (!(value >= 0.0))
       throw InvalidInput(quantity.where, fmt::format("{} must not be negative, got {}{}", what, value, remedy));
     return value;
+  }
+
+  double normal_load(const Quantity& quantity, const std::string& what) const {
+    if (negative_load_ == NegativeLoad::zero) return std::max(number(quantity, what), 0.0);
+    return at_least_zero(quantity, what, "; a slider cannot be pulled, its least load is 0");
   }
 
   void add_coordinate(const std::string& name, const Location& where) {
@@ -319,8 +324,7 @@ class Builder {
         throw InvalidInput(description.stiffness.where,
                            fmt::format("{}: stiffness must be positive, got {}", part, slider.stiffness));
       slider.limit = at_least_zero(description.friction_coefficient, part + ": friction_coefficient") *
-                     at_least_zero(description.normal_load, part + ": normal_load",
-                                   "; a slider cannot be pulled, its least load is 0");
+                     normal_load(description.normal_load, part + ": normal_load");
       model_.sliders.push_back(slider);
     }
   }
@@ -424,6 +428,7 @@ class Builder {
 
   const ModelDescription& description_;
   const Parameters& parameters_;
+  NegativeLoad negative_load_;
   Model model_;
   Index first_of_nodes_ = 0;
   std::unordered_map<std::string, Index> places_;
@@ -432,8 +437,8 @@ class Builder {
 
 }  // namespace
 
-Model build(const ModelDescription& description, const Parameters& parameters) {
-  return Builder(description, parameters).build();
+Model build(const ModelDescription& description, const Parameters& parameters, NegativeLoad negative_load) {
+  return Builder(description, parameters, negative_load).build();
 }
 
 }  // namespace rubato::model

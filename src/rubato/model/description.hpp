@@ -194,11 +194,26 @@ struct StaticDescription {
   std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
 };
 
+/// A step that chooses itself: step = { tolerance = ... }.
+struct StepDescription {
+  Quantity tolerance;      ///< [-]
+  std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
+  std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
+  std::optional<Quantity> first, smallest, largest;  ///< [s]
+  bool locate_events = false;                        ///< end steps where sliders change their state
+  std::optional<Quantity> reference;                 ///< l of inertia_jump [m sqrt(kg)]
+  bool reference_is_initial = false;                 ///< l = |q0|_M even where the model has a value of its own
+  bool as_printed = false;                           ///< inertia_jump with the misprint of its source
+  bool rebuild = true;                               ///< the auxiliary acceleration when the step changes
+  Location where;
+};
+
 struct TransientDescription {
   std::optional<StaticDescription> initial;  ///< starts from equilibrium; the `observe` in it is not used
   MethodDescription method;
-  std::optional<Quantity> step;  ///< [s]; not for `exact`
-  Quantity duration;             ///< [s]
+  std::optional<Quantity> step;                   ///< [s]; not for `exact`
+  std::optional<StepDescription> automatic_step;  ///< instead of `step`
+  Quantity duration;                              ///< [s]
   OutputDescription output;
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
   bool energy = true;                                          ///< keep the energy ledger
@@ -214,9 +229,92 @@ struct MethodStudyDescription {
   bool as_printed = false;                        ///< also the conventions of the thesis's tables
 };
 
+/// Values in order: a list, or so many points from one value to another, both ends included.
+struct ValuesDescription {
+  std::vector<Quantity> list;  ///< empty: the range below
+  Quantity from, to, points;
+  bool logarithmic = false;  ///< equal ratios between neighbours
+  Location where;
+};
+
+/// Every combination of values; the last parameter varies fastest.
+struct GridSweepDescription {
+  std::vector<std::pair<std::string, ValuesDescription>> parameters;  ///< in the order of the file
+};
+
+/// A list of cases, a row each, from a CSV file (already read) whose header names the parameters.
+struct CaseSweepDescription {
+  std::string file;
+  std::vector<std::string> names;
+  std::vector<double> values;  ///< row by row, [cases * names]
+  Location where;
+};
+
+/// Where the samples of a parameter come from: normal (mean, deviation), uniform (from, to), or lognormal (median,
+/// deviation of the logarithm).
+struct DistributionDescription {
+  enum class Kind { normal, uniform, lognormal };
+  std::string parameter;
+  Kind kind = Kind::normal;
+  Quantity first, second;
+  Location where;
+};
+
+struct RandomSweepDescription {
+  enum class Sampling { random, latin_hypercube, sobol };
+  Quantity samples;
+  long seed = 1;
+  Sampling sampling = Sampling::latin_hypercube;
+  std::vector<DistributionDescription> parameters;  ///< in the order of the file
+  Location where;
+};
+
+/// std::monostate: the parameters as they are.
+using SweepDescription =
+    std::variant<std::monostate, GridSweepDescription, CaseSweepDescription, RandomSweepDescription>;
+
+/// Points whose time histories are kept.
+struct WaveformsDescription {
+  ValuesDescription at;  ///< the nearest frequencies of the response, in its unit
+  Quantity points = 128.0;
+  Location where;
+};
+
+struct FrequencyResponseDescription {
+  enum class Route { periodic, harmonic_balance, time_marching };
+  enum class Start { unloaded, previous, rest };  ///< what a slider that never slips remembers
+  enum class Direction { up, down, both };
+
+  ValuesDescription frequencies;  ///< [rad/s], or [Hz]
+  bool frequencies_in_hertz = false;
+  std::string excitation;  ///< the parameter that takes them; empty: the one that the forces use
+  Location excitation_where;
+  SweepDescription sweep;
+  Location sweep_where;
+  Route route = Route::periodic;
+  Location route_where;
+  Start start = Start::unloaded;
+  Location start_where;
+  Direction direction = Direction::up;
+  Location direction_where;
+  std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
+  std::vector<Quantity> harmonics;                             ///< orders over the fundamental; the first unless given
+  std::optional<Quantity> tolerance;                           ///< relative [-]
+  std::optional<MethodDescription> method;                     ///< of time marching, as the two below
+  std::optional<Quantity> steps_per_period, max_periods;
+  std::optional<WaveformsDescription> waveforms;
+};
+
+struct ModesDescription {
+  std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
+  std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
+};
+
 struct AnalysisDescription {
   std::string name;
-  std::variant<TransientDescription, MethodStudyDescription, StaticDescription> task;
+  std::variant<TransientDescription, MethodStudyDescription, ModesDescription, FrequencyResponseDescription,
+               StaticDescription>
+      task;
   Location where;
 };
 

@@ -80,9 +80,13 @@ struct Model {
   Index size() const { return static_cast<Index>(coordinates.size()); }
 };
 
+/// What becomes of a slider whose normal load is negative (a slider cannot be pulled).
+enum class NegativeLoad { refuse, zero };
+
 /// The model for given values of the parameters. Throws InvalidInput, at the place in the user's file, for an unknown
 /// or duplicate name, a value out of its range (negative mass, zero mass where it makes M singular, negative stiffness,
 /// ...) or a faulty formula.
-Model build(const ModelDescription& description, const numerics::Parameters& parameters);
+Model build(const ModelDescription& description, const numerics::Parameters& parameters,
+            NegativeLoad negative_load = NegativeLoad::refuse);
 
 }  // namespace rubato::model

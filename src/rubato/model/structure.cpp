@@ -2,6 +2,10 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace rubato::model {
 
 void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations) {
@@ -28,6 +32,32 @@ void equations_of(const Structure& structure, const LineElement& element, Elemen
   const Eigen::Matrix3d axes = local_axes(along, across);
   turn_into_model_axes(axes, structure.dimension, is_beam, equations.stiffness);
   turn_into_model_axes(axes, structure.dimension, is_beam, equations.mass);
+}
+
+double reference_value(const Structure& structure, const Vector& point_mass) {
+  if (structure.elements.empty()) return 0.0;
+  Eigen::AlignedBox3d box;
+  for (const Axis& position : structure.positions) box.extend(position);
+  double mass = 0.0, inertia = 0.0;
+  for (const LineElement& element : structure.elements) {
+    const LineProperties& properties = structure.properties[static_cast<std::size_t>(element.properties)];
+    const Axis &a = structure.positions[static_cast<std::size_t>(element.first)],
+               &b = structure.positions[static_cast<std::size_t>(element.second)];
+    mass += properties.density * properties.area * (b - a).norm();
+  }
+  for (const auto& places : structure.places) {
+    double largest = 0.0;  // the mass of a node is the same along the axes that no support holds
+    for (std::size_t axis = 0; axis < places.size(); ++axis) {
+      const double value = places[axis] == ground ? 0.0 : point_mass[places[axis]];
+      if (is_rotation(axis))
+        inertia += value;
+      else
+        largest = std::max(largest, value);
+    }
+    mass += largest;
+  }
+  const double angle = std::numbers::pi / 10.0, elements = static_cast<double>(structure.elements.size());
+  return std::sqrt(3.0 * mass * box.diagonal().squaredNorm() / elements + inertia * angle * angle);
 }
 
 }  // namespace rubato::model

@@ -43,4 +43,13 @@ struct ElementEquations {
 /// The equations of an element of a structure. `equations` is overwritten; allocates nothing.
 void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations);
 
+/// Characteristic size of a structure for error measures (Cardona and Cassano 1991, appendix A-1) [m sqrt(kg)]:
+///
+///   l = sqrt(3 m box^2 / elements + J (pi/10)^2)
+///
+/// with m all translational mass (three components, also in the plane), box the diagonal of the bounding box of all
+/// nodes, held ones included, and J the sum of the point inertias. 0 without elements or extent.
+/// @param point_mass  masses and inertias by coordinate [n] [kg] or [kg m2]
+double reference_value(const Structure& structure, const Vector& point_mass);
+
 }  // namespace rubato::model

@@ -100,12 +100,15 @@ class GroupTable : public TableSource {
             std::span<double> values) const override {
     const std::size_t start[] = {first_row, 0}, count[] = {rows, labels};
     check(nc_get_vara_double(group_, ids_[variable], start, count, values.data()), variables_[variable].name);
+    const double missing = variables_[variable].categories.empty() ? NC_FILL_DOUBLE : NC_FILL_INT;
     for (double& value : values) {
-      if (value == NC_FILL_DOUBLE) value = std::numeric_limits<double>::quiet_NaN();
+      if (value == missing) value = std::numeric_limits<double>::quiet_NaN();
     }
   }
 
  private:
+  static constexpr std::size_t cache_bytes = 2u << 20;
+
   void add_variable(int id) {
     char name[NC_MAX_NAME + 1] = {};
     nc_type type = NC_NAT;
@@ -131,6 +134,9 @@ class GroupTable : public TableSource {
       variable.dimension = dimension;
       variable.labels = labels_of(group_, dimension, length);
     }
+    // Rows are read in order, so a few chunks suffice; netCDF would keep 16 MB a variable. Files of other making, which
+    // need not have chunks, are read without.
+    nc_set_var_chunk_cache(group_, id, cache_bytes, 11, 1.0f);
     std::istringstream meanings(attribute_or_empty(group_, id, "flag_meanings"));
     for (std::string word; meanings >> word;) variable.categories.push_back(word);
     variables_.push_back(std::move(variable));

@@ -1,36 +1,25 @@
 #include <rubato/report/digest.hpp>
 #include <rubato/report/json.hpp>
 #include <rubato/report/table_json.hpp>
-
-#include <algorithm>
+#include <rubato/report/table_pieces.hpp>
 
 #include <fmt/format.h>
 
 namespace rubato::report {
 namespace {
 
-// Enough that a column of the row coordinate resolves steps of 1e-7 of its range; the others are for the eye.
-constexpr int coordinate_digits = 10;
-constexpr int value_digits = 7;
-// Rows read at once: 32 labels of them are 2 MB.
-constexpr std::size_t piece_rows = 8192;
-
-using Columns = std::vector<std::vector<double>>;  // [labels][rows]
-
-/// Calls use(row coordinate, values of the labels) for the rows [first, first + rows), which it reads in pieces.
+/// Calls use(row coordinate, values of the labels) for all rows, which it reads in pieces.
 template <class Use>
-void for_each_row(const TableSource& table, std::size_t variable, std::size_t first, std::size_t rows,
-                  std::size_t labels, Use use) {
-  if (labels == 0) return;
-  std::vector<double> piece(std::min(piece_rows, rows) * labels), coordinates(std::min(piece_rows, rows));
-  for (std::size_t done = 0; done < rows;) {
-    const std::size_t count = std::min(piece_rows, rows - done);
-    const std::span<double> values(piece.data(), count * labels);
-    table.read(0, first + done, count, 1, std::span(coordinates).first(count));
-    table.read(variable, first + done, count, labels, values);
-    for (std::size_t i = 0; i < count; ++i) use(coordinates[i], values.subspan(i * labels, labels));
-    done += count;
-  }
+void for_each_timed_row(const TableSource& table, std::size_t variable, std::size_t labels, Use use) {
+  std::vector<double> coordinates(std::min(piece_rows, table.rows()));
+  for_each_row(table, variable, 0, table.rows(), labels, [&](std::size_t row, std::span<const double> values) {
+    const std::size_t place = row % piece_rows;
+    if (place == 0) {
+      const std::size_t count = std::min(piece_rows, table.rows() - row);
+      table.read(0, row, count, 1, std::span(coordinates).first(count));
+    }
+    use(coordinates[place], values);
+  });
 }
 
 double coordinate_of_row(const TableSource& table, std::size_t row) {
@@ -42,24 +31,10 @@ double coordinate_of_row(const TableSource& table, std::size_t row) {
 Columns read_columns(const TableSource& table, std::size_t variable, std::size_t first, std::size_t rows,
                      std::size_t labels) {
   Columns columns(labels);
-  for_each_row(table, variable, first, rows, labels, [&](double, std::span<const double> values) {
+  for_each_row(table, variable, first, rows, labels, [&](std::size_t, std::span<const double> values) {
     for (std::size_t label = 0; label < labels; ++label) columns[label].push_back(values[label]);
   });
   return columns;
-}
-
-std::string columns_json(const Columns& columns, int digits) {
-  std::string out = "[";
-  for (const auto& column : columns) out += (out.size() > 1 ? "," : "") + json_numbers(column, digits);
-  return out + ']';
-}
-
-std::string variable_json(const Variable& variable, std::size_t labels) {
-  const std::span<const std::string> shown(variable.labels.data(), variable.dimension.empty() ? 0 : labels);
-  return fmt::format(
-      R"({{"name":{},"unit":{},"description":{},"dimension":{},"labels":{},"label_count":{},"categories":{}}})",
-      json_string(variable.name), json_string(variable.unit), json_string(variable.description),
-      json_string(variable.dimension), json_strings(shown), variable.labels.size(), json_strings(variable.categories));
 }
 
 /// Overview of one variable, and its key numbers where they are asked for.
@@ -78,7 +53,7 @@ Digest digest(const TableSource& table, std::size_t variable, std::size_t labels
     numbers.assign(labels, KeyNumbers(coordinate_of_row(table, 0), coordinate_of_row(table, rows - 1)));
   }
   Columns columns(labels);
-  for_each_row(table, variable, 0, rows, labels, [&](double coordinate, std::span<const double> values) {
+  for_each_timed_row(table, variable, labels, [&](double coordinate, std::span<const double> values) {
     for (std::size_t label = 0; label < labels; ++label) {
       if (is_envelope) {
         envelopes[label].add(values[label]);

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/report/curves_json.hpp>
 #include <rubato/report/json.hpp>
 #include <rubato/report/page.hpp>
 #include <rubato/report/results_tables.hpp>
@@ -6,6 +7,7 @@
 #include <rubato/report/theory_json.hpp>
 #include <rubato/report/write_report.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -19,9 +21,28 @@ namespace {
 // The text of the study is shown whole up to here: beyond it the page would outgrow its figures.
 constexpr std::size_t longest_study = 1u << 20;
 
+// Shapes of modes are drawn over all their coordinates while these numbers suffice.
+constexpr std::size_t most_shape_numbers = 200'000;
+
+bool is_modes(const TableSource& table) {
+  const auto& variables = table.variables();
+  return std::any_of(variables.begin(), variables.end(), [](const Variable& v) { return v.name == "damping_ratio"; });
+}
+
+std::string digest_json(const TableSource& table, const Attributes& analysis) {
+  if (is_modes(table)) {
+    Extent extent;
+    extent.labels = std::max(extent.labels, most_shape_numbers / std::max<std::size_t>(table.rows(), 1));
+    return table_json(table, extent);
+  }
+  if (const auto layout = curve_layout(table, analysis)) return curves_json(table, *layout);
+  return table_json(table);
+}
+
 std::string analysis_json(const AnalysisTables& analysis) {
   std::string tables;
-  for (const auto& table : analysis.tables) tables += (tables.empty() ? "" : ",") + table_json(*table);
+  for (const auto& table : analysis.tables)
+    tables += (tables.empty() ? "" : ",") + digest_json(*table, analysis.attributes);
   return fmt::format(R"({{"name":{},"attributes":{},"tables":[{}]}})", json_string(analysis.name),
                      attributes_json(analysis.attributes), tables);
 }

@@ -177,6 +177,7 @@ LocallyNonlinear assemble(const model::Model& model) {
   parts.start.v = model.velocity;
   parts.coordinates = model.coordinates;
   parts.is_rotation = model.is_rotation;
+  parts.reference = model::reference_value(model.structure, model.mass);
   parts.held_forces = model.held_forces;
   parts.held_displacements = model.held_displacements;
   return LocallyNonlinear(std::move(parts));

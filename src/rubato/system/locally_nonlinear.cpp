@@ -70,9 +70,9 @@ EquilibriumAcceleration::EquilibriumAcceleration(const LocallyNonlinear& system)
 EquilibriumAcceleration::~EquilibriumAcceleration() = default;
 EquilibriumAcceleration::EquilibriumAcceleration(EquilibriumAcceleration&&) noexcept = default;
 
-void EquilibriumAcceleration::operator()(const State& state, Vector& acceleration) {
+void EquilibriumAcceleration::operator()(const State& state, Vector& acceleration, model::Side side) {
   Workspace& w = *work_;
-  w.loads.evaluate(state.t, w.force);
+  w.loads.evaluate(state.t, w.force, side);
   w.force.noalias() -= w.system.damping() * state.v;
   w.force.noalias() -= w.system.stiffness() * state.q;
   w.system.add_slider_forces(state.slider_force, -1.0, w.force);

@@ -23,10 +23,12 @@ class LocallyNonlinear {
     SparseMatrix mass, damping, stiffness;  ///< [n x n]
     std::vector<model::Slider> sliders;
     Loads loads;
-    State start;                                               ///< t = 0; q, v of the model; sliders without force
-    std::vector<std::string> coordinates;                      ///< names for messages and results, [n]
+    State start;                           ///< t = 0; q, v of the model; sliders without force
+    std::vector<std::string> coordinates;  ///< names for messages and results, [n]
+    std::vector<char> is_rotation;         ///< [n]: in [rad] instead of [m]; may be empty: none is
+    /// Characteristic size of the model for error measures (model::reference_value) [m sqrt(kg)]; 0: it has none.
+    double reference = 0.0;
     std::vector<model::Held> held_forces, held_displacements;  ///< in the static start only
-    std::vector<char> is_rotation;                             ///< [n]: in [rad] instead of [m]; may be empty: none is
   };
 
   explicit LocallyNonlinear(Parts parts);
@@ -45,6 +47,7 @@ class LocallyNonlinear {
   bool is_rotation(Index i) const {
     return !parts_.is_rotation.empty() && parts_.is_rotation[static_cast<std::size_t>(i)] != 0;
   }
+  double reference() const { return parts_.reference; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
   /// u = x_first - x_second of slider i [m]
@@ -70,7 +73,8 @@ class EquilibriumAcceleration {
   explicit EquilibriumAcceleration(const LocallyNonlinear& system);
   ~EquilibriumAcceleration();
   EquilibriumAcceleration(EquilibriumAcceleration&&) noexcept;
-  void operator()(const State& state, Vector& acceleration);
+  /// @param side  which limit to take of a load that jumps at state.t
+  void operator()(const State& state, Vector& acceleration, model::Side side = model::Side::right);
 
  private:
   struct Workspace;

@@ -46,13 +46,18 @@ ExactFlow::ExactFlow(const system::LocallyNonlinear& system)
       critical_(states_.size(), false),
       path_(TaylorPiece::degree + 1) {}
 
+void ExactFlow::set_excitation(const Excitation& excitation) {
+  piece_.set_excitation(excitation);
+  own_loads_ = false;
+}
+
 // Sliders at their limit are snapped to it, and stick or slip by the first term of u that is not round-off. Deciding
 // one changes later terms of the others only, so that the decision is repeated until it stands.
 void ExactFlow::decide_states(system::State& state, double table_end) {
   const auto m = static_cast<Index>(states_.size());
   for (Index i = 0; i < m; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double limit = system_.sliders()[k].limit;
+    const double limit = piece_.limit(i);
     double& force = state.slider_force[i];
     critical_[k] = std::abs(force) >= limit * (1.0 - at_limit);
     if (critical_[k]) force = std::copysign(limit, force);
@@ -71,7 +76,7 @@ void ExactFlow::decide_states(system::State& state, double table_end) {
       double size = 0.0, power = 1.0;
       for (int order = 0; order <= TaylorPiece::degree; ++order, power *= tau)
         size = std::max(size, std::abs(u[order]) * power);
-      const double limit = system_.sliders()[k].limit;
+      const double limit = piece_.limit(i);
       size = std::max(size, limit / system_.sliders()[k].stiffness);
       SliderState next = SliderState::stick;
       power = tau;
@@ -94,6 +99,7 @@ double ExactFlow::next_event(double length, Index& slider) {
   for (Index i = 0; i < static_cast<Index>(states_.size()); ++i) {
     if (is_idle(i)) continue;
     const auto& element = system_.sliders()[static_cast<std::size_t>(i)];
+    const double limit = piece_.limit(i);
     const double* u = piece_.relative_displacement(i);
     const SliderState state = states_[static_cast<std::size_t>(i)];
     const double reach = first < 0.0 ? length : first, tau = piece_.max_length();
@@ -102,13 +108,13 @@ double ExactFlow::next_event(double length, Index& slider) {
       for (std::size_t k = 0; k < path_.size(); ++k) path_[k] = element.stiffness * u[k];
       path_[0] += piece_.offset(i);
       // At the limit and, but for round-off, at rest: it has been decided that it moves inward.
-      const bool on_edge = std::abs(path_[0]) >= element.limit * (1.0 - 2.0 * at_limit);
-      if (on_edge && std::abs(path_[1]) * tau <= at_rest * element.limit) path_[1] = 0.0;
-      s = first_exit(path_, -element.limit, element.limit, reach);
+      const bool on_edge = std::abs(path_[0]) >= limit * (1.0 - 2.0 * at_limit);
+      if (on_edge && std::abs(path_[1]) * tau <= at_rest * limit) path_[1] = 0.0;
+      s = first_exit(path_, -limit, limit, reach);
     } else {  // its slip comes to rest
       path_.back() = 0.0;
       for (std::size_t k = 0; k + 1 < path_.size(); ++k) path_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
-      if (std::abs(path_[0]) * tau <= at_rest * element.limit / element.stiffness) path_[0] = 0.0;
+      if (std::abs(path_[0]) * tau <= at_rest * limit / element.stiffness) path_[0] = 0.0;
       s = first_exit(path_, 0.0, HUGE_VAL, reach);
     }
     if (s < 0.0 || (first >= 0.0 && s >= first)) continue;
@@ -122,7 +128,8 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
                                ExactVisitor& visitor, bool with_work) {
   ExactReport report;
   ExactWork work;
-  const std::vector<double> breaks = system_.loads().breakpoints(state.t, t_end);
+  std::vector<double> breaks;
+  if (own_loads_) breaks = system_.loads().breakpoints(state.t, t_end);
   std::size_t next_break = 0, next_sample = 0;
   long without_time = 0;
   now_ = state;
@@ -138,7 +145,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     for (std::size_t k = 0; k < states_.size(); ++k) {
       if (states_[k] == SliderState::stick) continue;
       const std::span<const double> u(piece_.relative_displacement(static_cast<Index>(k)), TaylorPiece::degree + 1);
-      work.slider += sign(states_[k]) * system_.sliders()[k].limit * (polynomial(u, to) - polynomial(u, from));
+      work.slider += sign(states_[k]) * piece_.limit(static_cast<Index>(k)) * (polynomial(u, to) - polynomial(u, from));
     }
   };
 
@@ -165,6 +172,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     }
     if (!(state.t < t_end)) break;
     book(booked, length);
+    visitor.piece(piece_, state.t, length, states_);
     now_.t = end;
     piece_.evaluate(length, now_);
     without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
@@ -182,7 +190,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     }
     // The slider of the event is at its limit by construction: round-off of the location may not say otherwise.
     const auto k = static_cast<std::size_t>(slider);
-    state.slider_force[slider] = std::copysign(system_.sliders()[k].limit, state.slider_force[slider]);
+    state.slider_force[slider] = std::copysign(piece_.limit(slider), state.slider_force[slider]);
     decided_ = states_;
     // The likeliest outcome first: it has changed, and the others have not.
     states_[k] = states_[k] != SliderState::stick   ? SliderState::stick

@@ -25,6 +25,10 @@ class ExactVisitor {
   virtual ~ExactVisitor() = default;
   virtual bool sample(const system::State& state, const ExactWork& work) = 0;
   virtual bool transition(const system::State& state, const Transition& transition, const ExactWork& work) = 0;
+  /// Sees every piece once, with the part of it that is used: from its start over a length [s].
+  virtual void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) {
+    (void)piece, (void)start, (void)length, (void)states;
+  }
 };
 
 enum class ExactEnd {
@@ -52,6 +56,9 @@ class ExactFlow {
   /// Throws InvalidInput for more than 300 coordinates and for loads by formulas of t.
   explicit ExactFlow(const system::LocallyNonlinear& system);
 
+  /// Takes other loads and limits than the system's.
+  void set_excitation(const Excitation& excitation);
+
   /// Carries a state to t_end.
   /// @param samples    rising times in [state.t, t_end] to visit [s]
   /// @param with_work  sum the work of dampers, sliders and loads
@@ -63,7 +70,7 @@ class ExactFlow {
 
  private:
   void decide_states(system::State& state, double table_end);
-  bool is_idle(Index i) const { return system_.sliders()[static_cast<std::size_t>(i)].limit == 0.0; }
+  bool is_idle(Index i) const { return piece_.limit(i) == 0.0; }
   double next_event(double length, Index& slider);
 
   const system::LocallyNonlinear& system_;
@@ -72,6 +79,7 @@ class ExactFlow {
   std::vector<bool> critical_;
   std::vector<double> path_;  ///< coefficients of a force, or of a rate of slip
   system::State now_;
+  bool own_loads_ = true;
 };
 
 }  // namespace rubato::integrate

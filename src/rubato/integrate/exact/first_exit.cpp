@@ -73,6 +73,21 @@ class Margin {
   std::size_t size_;
 };
 
+// All samples side by side: the recurrences of one would wait for each other.
+struct Samples {
+  std::array<double, samples> at, value{}, slope{};
+};
+Samples sample(std::span<const double> c, double length) {
+  Samples s;
+  for (std::size_t i = 0; i < samples; ++i) s.at[i] = length * static_cast<double>(i + 1) / samples;
+  for (std::size_t k = c.size(); k-- > 0;)
+    for (std::size_t i = 0; i < samples; ++i) {
+      s.slope[i] = s.slope[i] * s.at[i] + s.value[i];
+      s.value[i] = s.value[i] * s.at[i] + c[k];
+    }
+  return s;
+}
+
 // Where the slope of p, of the sign -`sign` at high, vanishes.
 double extremum(std::span<const double> c, double sign, double low, double slope_low, double high, double slope_high) {
   const double secant = low + (high - low) * slope_low / (slope_low - slope_high);
@@ -105,14 +120,7 @@ double first_exit(std::span<const double> c, double lower, double upper, double 
   if (c[0] + fall > lower && c[0] + rise < upper) return -1.0;
   c = c.first(terms);
 
-  // All samples side by side: the recurrences of one would wait for each other.
-  std::array<double, samples> at, value{}, slope{};
-  for (std::size_t i = 0; i < samples; ++i) at[i] = length * static_cast<double>(i + 1) / samples;
-  for (std::size_t k = terms; k-- > 0;)
-    for (std::size_t i = 0; i < samples; ++i) {
-      slope[i] = slope[i] * at[i] + value[i];
-      value[i] = value[i] * at[i] + c[k];
-    }
+  const auto [at, value, slope] = sample(c, length);
   double a = 0.0, slope_a = terms > 1 ? c[1] : 0.0;
   for (std::size_t i = 0; i < samples; ++i) {
     for (const double sign : {1.0, -1.0}) {
@@ -131,6 +139,32 @@ double first_exit(std::span<const double> c, double lower, double upper, double 
     slope_a = slope[i];
   }
   return -1.0;
+}
+
+void include_range(std::span<const double> c, double length, double& low, double& high) {
+  if (c.empty()) return;
+  const auto [at, value, slope] = sample(c, length);
+  double a = 0.0, value_a = c[0], slope_a = c.size() > 1 ? c[1] : 0.0;
+  low = std::min(low, value_a);
+  high = std::max(high, value_a);
+  for (std::size_t i = 0; i < samples; ++i) {
+    low = std::min(low, value[i]);
+    high = std::max(high, value[i]);
+    if (slope_a * slope[i] < 0.0) {
+      // Where the tangents of both ends meet lies beyond the extremum between them.
+      const double sign = slope_a > 0.0 ? 1.0 : -1.0, width = at[i] - a;
+      const double meet = (value[i] - value_a - slope[i] * width) / (slope_a - slope[i]);
+      const double bound = value_a + slope_a * meet;
+      if (sign > 0.0 ? bound > high : bound < low) {
+        const double extreme = polynomial(c, extremum(c, sign, a, slope_a, at[i], slope[i]));
+        low = std::min(low, extreme);
+        high = std::max(high, extreme);
+      }
+    }
+    a = at[i];
+    value_a = value[i];
+    slope_a = slope[i];
+  }
 }
 
 }  // namespace rubato::integrate

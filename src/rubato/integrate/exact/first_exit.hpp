@@ -11,6 +11,9 @@ namespace rubato::integrate {
 /// @param length        such that the polynomial turns at most once in an eighth of it
 double first_exit(std::span<const double> coefficients, double lower, double upper, double length);
 
+/// Widens [low, high] to the values that a polynomial takes over [0, length]; same conditions.
+void include_range(std::span<const double> coefficients, double length, double& low, double& high);
+
 /// sum_k c_k s^k
 double polynomial(std::span<const double> coefficients, double s);
 

@@ -1,5 +1,6 @@
 #include <rubato/integrate/exact/first_exit.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
+#include <rubato/numerics/gauss_legendre.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -45,30 +46,6 @@ constexpr std::array<double, TaylorPiece::degree + 1> inverse = [] {
   return table;
 }();
 
-/// Nodes and weights of Gauss-Legendre quadrature on [0, 1], by Newton on the Legendre polynomial.
-struct Gauss {
-  static constexpr int points = 16;
-  std::array<double, points> node, weight;
-
-  Gauss() {
-    for (int i = 0; i < points; ++i) {
-      double x = std::cos(std::numbers::pi * (i + 0.75) / (points + 0.5)), slope = 0.0;
-      for (int k = 0; k < 20; ++k) {
-        double p0 = 1.0, p1 = x;
-        for (int j = 2; j <= points; ++j) {
-          const double p2 = ((2.0 * j - 1.0) * x * p1 - (j - 1.0) * p0) / j;
-          p0 = p1;
-          p1 = p2;
-        }
-        slope = points * (x * p1 - p0) / (x * x - 1.0);
-        x -= p1 / slope;
-      }
-      node[static_cast<std::size_t>(i)] = 0.5 * (1.0 + x);
-      weight[static_cast<std::size_t>(i)] = 1.0 / ((1.0 - x * x) * slope * slope);
-    }
-  }
-};
-
 double largest_eigenvalue(const Matrix& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().cwiseAbs().maxCoeff();
 }
@@ -76,41 +53,78 @@ double largest_eigenvalue(const Matrix& symmetric) {
 }  // namespace
 
 TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
-    : system_(system),
-      loads_(system.loads()),
-      n_(system.size()),
-      m_(system.slider_count()),
-      terms_(static_cast<Index>(system.loads().terms().size())) {
+    : system_(system), n_(system.size()), m_(system.slider_count()) {
   const Eigen::LLT<Matrix> mass{Matrix(system.mass())};
   inverse_root_ = mass.matrixL().solve(Matrix::Identity(n_, n_));
+  inverse_mass_ = inverse_root_.transpose() * inverse_root_;
   dense_damping_ = Matrix(system.damping());
   damping_ = mass.solve(dense_damping_);
   damping_norm_ = largest_eigenvalue(inverse_root_ * dense_damping_ * inverse_root_.transpose());
-  pattern_ = Matrix::Zero(n_, terms_);
   Matrix joins = Matrix::Zero(n_, m_);
-  for (Index i = 0; i < terms_; ++i) {
-    const auto& term = loads_.terms()[static_cast<std::size_t>(i)];
-    for (std::size_t k = 0; k < term.rows.size(); ++k) pattern_(term.rows[k], i) += term.weights[k];
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law))
-      largest_load_frequency_ = std::max(largest_load_frequency_, harmonic->angular_frequency);
-  }
+  limits_.resize(m_);
   for (Index i = 0; i < m_; ++i) {
     const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
     if (slider.first != ground) joins(slider.first, i) += 1.0;
     if (slider.second != ground) joins(slider.second, i) -= 1.0;
+    limits_[i] = slider.limit;
   }
-  // Eigen touches the first entry of what it solves for, and a model without loads or sliders has none.
-  load_pattern_ = pattern_.cols() > 0 ? Matrix(mass.solve(pattern_)) : pattern_;
-  joins_ = joins.cols() > 0 ? Matrix(mass.solve(joins)) : joins;
+  // Eigen touches the first entry of what it solves for, and a model without sliders has none.
+  joins_ = m_ > 0 ? Matrix(mass.solve(joins)) : joins;
+
+  const auto& terms = system.loads().terms();
+  pattern_ = Matrix::Zero(n_, static_cast<Index>(terms.size()));
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    Load load;
+    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&terms[i].law))
+      load = {harmonic->angular_frequency, harmonic->phase, nullptr};
+    else
+      load.table = std::get_if<model::TableLaw>(&terms[i].law);
+    loads_.push_back(load);
+    for (std::size_t k = 0; k < terms[i].rows.size(); ++k)
+      pattern_(terms[i].rows[k], static_cast<Index>(i)) += terms[i].weights[k];
+  }
+  set_pattern();
+
   forcing_.resize(n_, degree);
   q_.resize(n_, degree + 1);
   v_.resize(n_, degree + 1);
   u_.resize(degree + 1, m_);
-  load_.resize(degree + 1, terms_);
   offset_.resize(m_);
   work_q_.resize(n_);
   work_v_.resize(n_);
   work_product_.resize(n_);
+}
+
+void TaylorPiece::set_pattern() {
+  terms_ = static_cast<Index>(loads_.size());
+  largest_load_frequency_ = 0.0;
+  for (const Load& load : loads_)
+    largest_load_frequency_ = std::max(largest_load_frequency_, std::abs(load.angular_frequency));
+  load_pattern_.resize(n_, terms_);
+  load_pattern_.noalias() = inverse_mass_.lazyProduct(pattern_);
+  load_.resize(degree + 1, terms_);
+}
+
+// A complex amplitude a is a_r cos(k w t) + a_i cos(k w t + pi/2).
+void TaylorPiece::set_excitation(const Excitation& excitation) {
+  limits_ = excitation.limits;
+  loads_.clear();
+  const bool is_static = excitation.constant.size() > 0 && excitation.constant.cwiseAbs().maxCoeff() > 0.0;
+  if (is_static) loads_.push_back({});
+  for (const LoadHarmonic& harmonic : excitation.harmonics) {
+    const double frequency = harmonic.order * excitation.angular_frequency;
+    loads_.push_back({frequency, 0.0, nullptr});
+    if (harmonic.amplitude.imag().cwiseAbs().maxCoeff() > 0.0)
+      loads_.push_back({frequency, 0.5 * std::numbers::pi, nullptr});
+  }
+  pattern_.resize(n_, static_cast<Index>(loads_.size()));
+  Index column = 0;
+  if (is_static) pattern_.col(column++) = excitation.constant;
+  for (const LoadHarmonic& harmonic : excitation.harmonics) {
+    pattern_.col(column++) = harmonic.amplitude.real();
+    if (harmonic.amplitude.imag().cwiseAbs().maxCoeff() > 0.0) pattern_.col(column++) = harmonic.amplitude.imag();
+  }
+  set_pattern();
 }
 
 const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<SliderState>& states) {
@@ -130,14 +144,14 @@ const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<Slider
   }
   // |eigenvalue| <= the positive root of x^2 = c x + k with the norms of C and K in the metric of M.
   const double k = largest_eigenvalue(inverse_root_ * stiffness * inverse_root_.transpose());
-  const double rho =
-      std::max(0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k)), largest_load_frequency_);
-  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness), reach / std::max(rho, 1e-300)};
+  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness),
+                      0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k))};
   return cache_.emplace(std::move(key), std::move(operators)).first->second;
 }
 
 void TaylorPiece::start(const system::State& state, const std::vector<SliderState>& states, double table_end) {
   operators_ = &operators_of(states);
+  length_ = reach / std::max({operators_->rate, largest_load_frequency_, 1e-300});
   states_ = states;
   q_.col(0) = state.q;
   v_.col(0) = state.v;
@@ -147,9 +161,9 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
     offset_[i] = state.slider_force[i] - (sticks ? slider.stiffness * system_.relative_displacement(i, state.q) : 0.0);
   }
   for (Index i = 0; i < terms_; ++i) {
-    const auto& law = loads_.terms()[static_cast<std::size_t>(i)].law;
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&law)) {
-      const double w = harmonic->angular_frequency, angle = w * state.t + harmonic->phase;
+    const Load& law = loads_[static_cast<std::size_t>(i)];
+    if (!law.table) {
+      const double w = law.angular_frequency, angle = w * state.t + law.phase;
       double cosine = std::cos(angle), sine = std::sin(angle);
       for (int k = 0; k <= degree; ++k) {
         load_(k, i) = cosine;
@@ -159,9 +173,9 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
       }
     } else {
       load_.col(i).setZero();
-      load_(0, i) = model::value(law, state.t, model::Side::right);
+      load_(0, i) = model::value(*law.table, state.t, model::Side::right);
       if (table_end > state.t)
-        load_(1, i) = (model::value(law, table_end, model::Side::left) - load_(0, i)) / (table_end - state.t);
+        load_(1, i) = (model::value(*law.table, table_end, model::Side::left) - load_(0, i)) / (table_end - state.t);
     }
   }
   if (terms_ == 0) forcing_.setZero();
@@ -222,13 +236,13 @@ void TaylorPiece::evaluate(double s, system::State& state) const {
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
     const bool sticks = states_[static_cast<std::size_t>(i)] == SliderState::stick;
     const double force = offset_[i] + (sticks ? slider.stiffness * system_.relative_displacement(i, state.q) : 0.0);
-    state.slider_force[i] = std::clamp(force, -slider.limit, slider.limit);
+    state.slider_force[i] = std::clamp(force, -limits_[i], limits_[i]);
   }
 }
 
 void TaylorPiece::add_work(double from, double to, double& damper, double& load) const {
-  static const Gauss gauss;
-  for (int i = 0; i < Gauss::points; ++i) {
+  static const numerics::GaussLegendre<16> gauss;
+  for (int i = 0; i < 16; ++i) {
     const double s = from + (to - from) * gauss.node[static_cast<std::size_t>(i)];
     const double weight = (to - from) * gauss.weight[static_cast<std::size_t>(i)];
     evaluate(s, work_q_, work_v_);

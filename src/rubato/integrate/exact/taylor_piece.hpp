@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/steady/excitation.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <map>
@@ -27,18 +28,26 @@ class TaylorPiece {
   /// Throws nothing; the system must be checked before (see ExactFlow).
   explicit TaylorPiece(const system::LocallyNonlinear& system);
 
+  /// Takes other loads and limits than the system's. Only harmonic loads.
+  void set_excitation(const Excitation& excitation);
+  /// mu N of a slider [N].
+  double limit(Index slider) const { return limits_[slider]; }
+
   /// Makes the piece that starts at a state.
   /// @param states  of the sliders [m]
   /// @param table_end  a time to which every table is linear from state.t on [s]
   void start(const system::State& state, const std::vector<SliderState>& states, double table_end);
 
   /// How far the polynomial is exact [s].
-  double max_length() const { return operators_->length; }
+  double max_length() const { return length_; }
 
   /// q and v at s after the start, and the slider forces there.
   void evaluate(double s, system::State& state) const;
   void evaluate(double s, Vector& q, Vector& v) const;
 
+  /// Coefficients of the displacements and velocities, by columns of degree [n x degree + 1].
+  const Matrix& displacements() const { return q_; }
+  const Matrix& velocities() const { return v_; }
   /// Coefficients of u = x_first - x_second of a slider.
   const double* relative_displacement(Index slider) const { return u_.col(slider).data(); }
   /// The part of a slider's force that does not move with u: fc = kT u + offset while it sticks, fc = offset otherwise.
@@ -51,8 +60,13 @@ class TaylorPiece {
  private:
   struct Operators {
     Matrix stiffness;  // M^-1 (K + stuck)
-    double length;
+    double rate;       // a bound of |eigenvalues|
   };
+  struct Load {
+    double angular_frequency = 0.0, phase = 0.0;
+    const model::TableLaw* table = nullptr;  // instead of a harmonic law
+  };
+  void set_pattern();
   template <int N>
   void fill_coefficients();
   template <int N>
@@ -60,13 +74,15 @@ class TaylorPiece {
   const Operators& operators_of(const std::vector<SliderState>& states);
 
   const system::LocallyNonlinear& system_;
-  system::Loads loads_;
-  Index n_, m_, terms_;
-  Matrix damping_, load_pattern_, joins_;  // M^-1 C, M^-1 P, M^-1 B
-  Matrix dense_damping_, inverse_root_;    // C; L^-1 of M = L L^T
+  Index n_, m_, terms_ = 0;
+  std::vector<Load> loads_;
+  Vector limits_;
+  Matrix inverse_mass_, damping_, load_pattern_, joins_;  // M^-1 C, M^-1 P, M^-1 B
+  Matrix dense_damping_, inverse_root_;                   // C; L^-1 of M = L L^T
   Matrix pattern_;
   std::map<std::vector<SliderState>, Operators> cache_;
   const Operators* operators_ = nullptr;
+  double length_ = 0.0;
   std::vector<SliderState> states_;
   Matrix forcing_;           // M^-1 (P l_k - B c), by columns of degree
   Matrix q_, v_, u_, load_;  // coefficients by columns of degree; u and loads by columns of slider and term

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
@@ -39,10 +40,12 @@ class AlphaStepper final : public Stepper {
   // A stands at t + d h with d = alpha_m - alpha_f: its distance from the acceleration at t is proportional to h.
   void step_changes(system::State& state, double ratio) override {
     if (p_.alpha_m == 0.0 && p_.alpha_f == 0.0) return;
-    Vector acceleration(system_.size());
-    system::EquilibriumAcceleration equilibrium(system_);
-    equilibrium(state, acceleration);
-    state.auxiliary_acceleration = acceleration + ratio * (state.auxiliary_acceleration - acceleration);
+    if (!equilibrium_) {  // most marches never need it, and it may factorise the mass
+      equilibrium_.emplace(system_);
+      acceleration_.resize(system_.size());
+    }
+    (*equilibrium_)(state, acceleration_);
+    state.auxiliary_acceleration = acceleration_ + ratio * (state.auxiliary_acceleration - acceleration_);
   }
 
   StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
@@ -69,6 +72,8 @@ class AlphaStepper final : public Stepper {
   PreparedStep step_;
   LoadValues loads_;
   std::vector<double> load_;
+  std::optional<system::EquilibriumAcceleration> equilibrium_;
+  Vector acceleration_;
 };
 
 /// Linear acceleration to t + theta h under the load continued linearly, then back to t + h on the same line. The

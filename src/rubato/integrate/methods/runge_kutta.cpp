@@ -26,6 +26,7 @@ class RungeKuttaStepper final : public Stepper {
   }
 
   StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    h_ = h;
     for (int i = 0; i < tableau_.stages; ++i) {
       const auto row = static_cast<std::size_t>(i);
       stage_.q = from.q;
@@ -55,6 +56,18 @@ class RungeKuttaStepper final : public Stepper {
     return {};
   }
 
+  bool embedded_difference(Vector& dq, Vector& dv) const override {
+    if (tableau_.embedded_order == 0) return false;
+    dq.setZero();
+    dv.setZero();
+    for (std::size_t j = 0; j < slope_q_.size(); ++j) {
+      const double weight = h_ * (tableau_.b[j] - tableau_.embedded[j]);
+      dq += weight * slope_q_[j];
+      dv += weight * slope_v_[j];
+    }
+    return true;
+  }
+
  private:
   void slide(const system::State& from, system::State& end) const {
     for (Index i = 0; i < system_.slider_count(); ++i) {
@@ -79,6 +92,7 @@ class RungeKuttaStepper final : public Stepper {
   const system::LocallyNonlinear& system_;
   system::Loads loads_;
   system::State stage_;
+  double h_ = 0.0;  // of the last attempt
   std::vector<Vector> slope_q_, slope_v_;
   Vector force_, inverse_mass_;
   Eigen::SimplicialLDLT<SparseMatrix> mass_factor_;

@@ -13,7 +13,8 @@ namespace {
 constexpr int most_harmonics = 64;
 constexpr double same_frequency = 1e-10;  // relative: frequencies come from formulas such as 3 * speed
 
-// The order of a frequency over a fundamental, or 0 where it is none.
+}  // namespace
+
 int order_over(double frequency, double fundamental) {
   const double ratio = frequency / fundamental, whole = std::round(ratio);
   return whole >= 1.0 && whole <= most_harmonics && std::abs(ratio - whole) <= same_frequency * whole
@@ -21,8 +22,8 @@ int order_over(double frequency, double fundamental) {
              : 0;
 }
 
-// The largest frequency of which all given ones are multiples: the smallest divided by 1, 2, 3, ...
 double fundamental_of(const std::vector<double>& frequencies) {
+  // The smallest divided by 1, 2, 3, ...
   const double lowest = *std::min_element(frequencies.begin(), frequencies.end());
   for (int divisor = 1; divisor <= most_harmonics; ++divisor) {
     const double candidate = lowest / divisor;
@@ -35,8 +36,6 @@ double fundamental_of(const std::vector<double>& frequencies) {
       "fundamental up to its harmonic {}; choose commensurate frequencies, or solver = \"time_marching\"",
       lowest, *std::max_element(frequencies.begin(), frequencies.end()), most_harmonics));
 }
-
-}  // namespace
 
 double Excitation::period() const { return 2.0 * std::numbers::pi / angular_frequency; }
 

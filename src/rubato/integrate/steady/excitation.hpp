@@ -32,6 +32,13 @@ struct Excitation {
   bool is_half_wave_symmetric() const;
 };
 
+/// The largest frequency of which all the given ones (> 0) are multiples, up to its 64th, to 1e-10 relative. Throws
+/// InvalidInput where there is none.
+double fundamental_of(const std::vector<double>& frequencies);
+
+/// The order of a frequency over a fundamental, or 0 where it is no multiple up to the 64th.
+int order_over(double frequency, double fundamental);
+
 /// The excitation of a system: its loads with their common period, and the limits of its sliders. A load of zero
 /// frequency is static. Throws InvalidInput where there is no harmonic load, for loads that are no harmonic functions
 /// of time, and for frequencies without a common period (up to the 64th harmonic of a fundamental).

@@ -51,10 +51,33 @@ function complete_layout(layout, height, is_small) {
   };
 }
 
+/** Whether options are too many, or too long, for a row of buttons. */
+function is_long_choice({options}) {
+  return options.length > 7 || options.reduce((length, option) => length + option.length, 0) > 90;
+}
+
+function choice_buttons(chooser, choose) {
+  return element("div", {class: "chooser", role: "group", "aria-label": chooser.label}, chooser.options.map((option, index) => element(
+    "button", {type: "button", "aria-pressed": String(index === 0), onclick: (event) => {
+      for (const button of event.target.parentNode.children) {
+        button.setAttribute("aria-pressed", String(button === event.target));
+      }
+      choose(index);
+    }}, option)));
+}
+
+function choice_list(chooser, choose) {
+  const list = element("select", {"aria-label": chooser.label}, chooser.options.map((option, index) => element(
+    "option", {value: String(index)}, option)));
+  list.addEventListener("change", () => choose(list.selectedIndex));
+  return element("label", {class: "choice"}, `${chooser.label} `, list);
+}
+
 /**
  * A figure.
  *
- * choosers: [{label, options: [text, ...]}]: rows of buttons; draw(chosen) is given the index chosen in each.
+ * choosers: [{label, options: [text, ...]}]: rows of buttons, or a list to choose from where there are many; draw(chosen)
+ * is given the index chosen in each.
  * draw: returns {traces, layout}.
  * is_small: half the width of the page.
  */
@@ -67,15 +90,13 @@ function make_figure({caption, draw, choosers = [], height = 380, is_small = fal
     onclick: () => Plotly.downloadImage(plot, {format: "svg", filename: `figure-${number}`,
                                                width: plot.clientWidth, height}),
   }, "Download SVG");
-  const tools = choosers.length === 0 ? null : element("div", {class: "tools"}, choosers.map((chooser, which) => element(
-    "div", {class: "chooser", role: "group", "aria-label": chooser.label}, chooser.options.map((option, index) => element(
-      "button", {type: "button", "aria-pressed": String(index === 0), onclick: (event) => {
-        chosen[which] = index;
-        for (const button of event.target.parentNode.children) {
-          button.setAttribute("aria-pressed", String(button === event.target));
-        }
-        render();
-      }}, option)))));
+  const tools = choosers.length === 0 ? null : element("div", {class: "tools"}, choosers.map((chooser, which) => {
+    const choose = (index) => {
+      chosen[which] = index;
+      render();
+    };
+    return is_long_choice(chooser) ? choice_list(chooser, choose) : choice_buttons(chooser, choose);
+  }));
   const node = element("figure", {id: `figure-${number}`}, ...(tools ? [tools] : []), plot, element(
     "figcaption", {}, element("span", {}, element("b", {}, `Figure ${number}. `), caption), save));
 

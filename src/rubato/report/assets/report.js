@@ -22,14 +22,14 @@ function what_became(analysis) {
 function write_summary(parent) {
   const chapter = add_chapter(parent, "Summary");
   const statistics = (analysis) => Object.entries(analysis.attributes)
-    .filter(([name]) => !["type", "method", "step", "status", "message", "slider_stiffness", "slider_limit"].includes(name))
+    .filter(([name]) => !["type", "method", "solver", "step", "status", "message", "slider_stiffness", "slider_limit"].includes(name))
     .map(([name, value]) => `${name.replaceAll("_", " ")}: ${value}`).join("; ");
   chapter.node.append(...data.analyses.map(what_became).filter((node) => node));
   add_section(chapter, "Analyses", make_table({
     caption: "What was run and what became of it.",
     columns: ["Analysis", "Type", "Method", "Step", "Status", "Notes"].map((title) => ({title, is_text: true})),
     rows: data.analyses.map((analysis) => {
-      const {type, method, step, status} = analysis.attributes;
+      const {type, solver, method = solver, step, status} = analysis.attributes;
       return [element("a", {href: `#analysis-${data.analyses.indexOf(analysis)}`}, analysis.name), type ? phrase(type) : "–",
               method ?? "–", step ?? "–", badge(status), statistics(analysis) || "–"];
     }),
@@ -44,14 +44,22 @@ function write_summary(parent) {
 }
 
 function write_analysis(parent, analysis, index) {
-  const {type, method, step, status} = analysis.attributes;
-  const facts = [type && phrase(type), method && `method ${method}`, step && `step ${step}`].filter((fact) => fact);
+  const {type, solver, method, step, status} = analysis.attributes;
+  const facts = [type && phrase(type), solver && `solver ${solver.replaceAll("_", " ")}`, method && `method ${method}`, step && `step ${step}`].filter((fact) => fact);
   const chapter = add_chapter(parent, analysis.name, element("p", {class: "facts", id: `analysis-${index}`}, facts.join(" · "),
                                                              facts.length ? " " : "", badge(status)),
                               what_became(analysis));
   if (is_transient(analysis)) {
     write_transient(chapter, analysis);
     write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));
+  } else if (is_frequency_response(analysis)) {
+    write_frequency_response(chapter, analysis);
+  } else if (is_damper_curve(analysis)) {
+    write_damper_curve(chapter, analysis);
+  } else if (modes_table_of(analysis)) {
+    const modes = modes_table_of(analysis);
+    write_modes(chapter, modes);
+    write_tables(chapter, analysis.tables.filter((table) => table !== modes));
   } else if (is_method_study(analysis)) {
     write_method_study(chapter, analysis, data.theory);
   } else {

@@ -1,0 +1,165 @@
+#include <rubato/analysis/automatic_step.hpp>
+#include <rubato/integrate/stability.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::analysis {
+namespace {
+
+double positive(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
+                const numerics::Parameters& parameters) {
+  if (!quantity) return otherwise;
+  const double value = model::evaluate(*quantity, parameters, what);
+  if (!(value > 0.0)) throw InvalidInput(quantity->where, fmt::format("{} must be positive, got {}", what, value));
+  return value;
+}
+
+double shortest_period(const system::LocallyNonlinear& system) {
+  double fastest = 0.0;
+  for (const auto& term : system.loads().terms())
+    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law))
+      fastest = std::max(fastest, std::abs(harmonic->angular_frequency));
+  return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest : HUGE_VAL;
+}
+
+integrate::Controller controller_of(const std::string& name) {
+  if (name == "fixed") return integrate::FixedStep{};
+  if (name == "cardona_cassano") return integrate::CardonaCassano{};
+  return integrate::PiControl{};
+}
+
+integrate::EstimatorKind estimator_of(const model::StepDescription& description, const integrate::Method& method,
+                                      double tolerance, double reference, const system::LocallyNonlinear& system) {
+  const bool is_paper = description.estimator.empty() && description.controller == "cardona_cassano" &&
+                        !std::holds_alternative<integrate::RungeKutta>(method.formula);
+  if (is_paper || description.estimator == "inertia_jump") {
+    const double known = description.reference_is_initial ? 0.0 : system.reference();
+    return integrate::InertiaJump{tolerance, description.reference ? reference : known, description.as_printed};
+  }
+  for (const bool is_given :
+       {description.reference.has_value(), description.reference_is_initial, description.as_printed})
+    if (is_given)
+      throw InvalidInput(description.where,
+                         "step: \"reference\" and \"as_printed\" belong to the estimator inertia_jump");
+  if (description.estimator == "local_error") return integrate::LocalError{tolerance};
+  if (description.estimator == "embedded") return integrate::Embedded{tolerance};
+  return integrate::default_estimator(method, tolerance);
+}
+
+/// The largest step that neither passes over the loads nor leaves the stable range.
+double largest_step(const std::string& title, const model::StepDescription& description,
+                    const integrate::Method& method, const system::LocallyNonlinear& system,
+                    const numerics::Parameters& parameters, double duration, bool allow_unstable) {
+  const double safe = std::min(duration / 50.0, shortest_period(system) / 6.0);
+  const double largest = std::min(duration, positive(description.largest, safe, title + "largest", parameters));
+  if (allow_unstable) return largest;
+  const integrate::ModelStability limit = integrate::stability_of(method, system);
+  if (limit.step >= largest) return largest;
+  if (limit.step == 0.0)
+    throw InvalidInput(description.where,
+                       fmt::format("{}{} has no stable step for mode {} of the model; take \"generalized_alpha\", or "
+                                   "set allow_unstable = true",
+                                   title, method.name, limit.mode));
+  if (!description.largest) return limit.step;
+  throw InvalidInput(description.largest->where,
+                     fmt::format("{}largest = {} s is beyond the stability limit of {}, {:.6g} s, which mode {} of the "
+                                 "model sets; leave it out, or set allow_unstable = true",
+                                 title, largest, method.name, limit.step, limit.mode));
+}
+
+}  // namespace
+
+AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
+                                  const integrate::Method& method, const system::LocallyNonlinear& system,
+                                  const system::State& start, const numerics::Parameters& parameters, double duration,
+                                  bool allow_unstable) {
+  const std::string title = analysis + "step: ";
+  AutomaticStep step;
+  step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
+  const double reference = positive(description.reference, 0.0, title + "reference", parameters);
+  integrate::StepPlan& plan = step.plan;
+  plan.controller = controller_of(description.controller);
+  plan.locate_events = description.locate_events;
+  plan.rebuild = description.rebuild;
+  plan.smallest = positive(description.smallest, 1e-12 * duration, title + "smallest", parameters);
+  plan.largest = largest_step(title, description, method, system, parameters, duration, allow_unstable);
+  plan.first = positive(description.first, 0.0, title + "first", parameters);
+  if (!(plan.smallest <= plan.largest))
+    throw InvalidInput(
+        description.smallest ? description.smallest->where : description.where,
+        fmt::format("{}the smallest step {} s is beyond the largest, {} s", title, plan.smallest, plan.largest));
+  if (plan.first > 0.0 && !(plan.first >= plan.smallest && plan.first <= plan.largest))
+    throw InvalidInput(description.first->where,
+                       fmt::format("{}the first step {} s lies outside the range from {} s to {} s", title, plan.first,
+                                   plan.smallest, plan.largest));
+  if (std::holds_alternative<integrate::FixedStep>(plan.controller) && !description.first)
+    throw InvalidInput(description.where,
+                       title + "the controller fixed keeps the first step; give it, first = ... [s]");
+  step.estimator = estimator_of(description, method, step.tolerance, reference, system);
+  try {
+    const auto stepper = integrate::make_stepper(method, system);
+    const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
+    estimator->start(integrate::consistent_start(system, start));
+    const double first = plan.first > 0.0 ? plan.first : std::min(plan.largest, estimator->first_step());
+    step.expected_steps = std::ceil(duration / first);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(description.tolerance.where, title + fault.message());
+  }
+  return step;
+}
+
+StepRecorder::StepRecorder(const std::string& analysis, const AutomaticStep& step, results::Sink& sink)
+    : tolerance_(step.tolerance) {
+  rows_ = sink.open({analysis,
+                     "steps",
+                     "time",
+                     {{"time", "s", "start of the step that is tried", "", {}},
+                      {"step", "s", "its length", "", {}},
+                      {"error", "1", "its error, to be compared with the tolerance", "", {}},
+                      {"accepted", "1", "1: accepted, 0: tried again with another length", "", {}},
+                      {"reason",
+                       "1",
+                       "what became of it",
+                       "",
+                       {},
+                       {"accepted", "error_too_large", "not_converged", "not_finite", "singular", "event"}}},
+                     {{"type", "steps"},
+                      {"tolerance", fmt::format("{}", step.tolerance)},
+                      {"estimator", integrate::name_of(step.estimator)},
+                      {"controller", integrate::name_of(step.plan.controller)}}});
+}
+
+void StepRecorder::tried(const integrate::StepTry& step_try) {
+  const std::array<double, 5> row{step_try.t, step_try.step, step_try.error * tolerance_,
+                                  step_try.outcome == integrate::TryOutcome::accepted ? 1.0 : 0.0,
+                                  static_cast<double>(step_try.outcome)};
+  rows_->append(row);
+}
+
+std::string summary(const AutomaticStep& step) {
+  return fmt::format("tolerance {} ({}, {})", step.tolerance, integrate::name_of(step.estimator),
+                     integrate::name_of(step.plan.controller));
+}
+
+std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length) {
+  std::vector<std::pair<std::string, std::string>> all{{"steps", std::to_string(report.march.steps)},
+                                                       {"rejected", std::to_string(report.rejected)},
+                                                       {"failed", std::to_string(report.failed)},
+                                                       {"events", std::to_string(report.events)},
+                                                       {"restarts", std::to_string(report.restarts)},
+                                                       {"solves", std::to_string(report.solves)},
+                                                       {"factorisations", std::to_string(report.factorisations)}};
+  if (report.march.steps > 0) {
+    all.emplace_back("smallest_step", fmt::format("{:.6g} s", report.smallest_step));
+    all.emplace_back("mean_step", fmt::format("{:.6g} s", length / static_cast<double>(report.march.steps)));
+    all.emplace_back("largest_step", fmt::format("{:.6g} s", report.largest_step));
+  }
+  return all;
+}
+
+}  // namespace rubato::analysis

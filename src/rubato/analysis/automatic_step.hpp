@@ -1,0 +1,48 @@
+#pragma once
+
+#include <rubato/integrate/adaptive_march.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/results/sink.hpp>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A step that chooses itself, with all its values.
+struct AutomaticStep {
+  integrate::StepPlan plan;
+  integrate::EstimatorKind estimator;
+  double tolerance = 1e-3;
+  double expected_steps = 0.0;  ///< from the first step: for progress and the size of files
+};
+
+/// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator
+/// `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the
+/// duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
+/// `allow_unstable`, the stability limit of the method. Throws InvalidInput at the place of the value.
+AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
+                                  const integrate::Method& method, const system::LocallyNonlinear& system,
+                                  const system::State& start, const numerics::Parameters& parameters, double duration,
+                                  bool allow_unstable);
+
+/// Streams every try of a step into the table `steps`: time, step, error and what became of it.
+class StepRecorder final : public integrate::TryLog {
+ public:
+  StepRecorder(const std::string& analysis, const AutomaticStep& step, results::Sink& sink);
+  void tried(const integrate::StepTry& step_try) override;
+
+ private:
+  double tolerance_;
+  std::unique_ptr<results::RowWriter> rows_;
+};
+
+/// "tolerance 0.001 (local_error, pi)"
+std::string summary(const AutomaticStep& step);
+
+/// What the march counted, for the results.
+std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length);
+
+}  // namespace rubato::analysis

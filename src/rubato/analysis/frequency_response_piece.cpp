@@ -1,0 +1,263 @@
+#include <rubato/analysis/frequency_response_piece.hpp>
+
+#include <algorithm>
+
+namespace rubato::analysis {
+
+void SweepCounts::add(const SweepCounts& other) {
+  for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i] += other.by_status[i];
+  iterations += other.iterations;
+  negative_loads += other.negative_loads;
+  const auto first = [](double& mine, double theirs) {
+    if (theirs >= 0.0 && (mine < 0.0 || theirs < mine)) mine = theirs;
+  };
+  first(first_negative, other.first_negative);
+  first(first_unbounded, other.first_unbounded);
+  first(first_impossible, other.first_impossible);
+}
+
+double SweepCounts::points() const {
+  double sum = 0.0;
+  for (const double count : by_status) sum += count;
+  return sum;
+}
+
+std::vector<double> PieceResult::packed() const {
+  std::vector<double> values(counts.by_status.begin(), counts.by_status.end());
+  values.insert(values.end(),
+                {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
+                 counts.first_impossible, static_cast<double>(main.size()), static_cast<double>(linear.size()),
+                 static_cast<double>(waveforms.size()), static_cast<double>(held.size())});
+  for (const auto* rows : {&main, &linear, &waveforms, &held}) values.insert(values.end(), rows->begin(), rows->end());
+  return values;
+}
+
+PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const double> values) {
+  PieceResult result;
+  result.piece = piece;
+  std::size_t place = 0;
+  const auto next = [&] { return values[place++]; };
+  for (double& count : result.counts.by_status) count = next();
+  for (double* value : {&result.counts.iterations, &result.counts.negative_loads, &result.counts.first_negative,
+                        &result.counts.first_unbounded, &result.counts.first_impossible})
+    *value = next();
+  std::array<std::size_t, 4> sizes{};
+  for (std::size_t& size : sizes) size = static_cast<std::size_t>(next());
+  const std::array<std::vector<double>*, 4> tables{&result.main, &result.linear, &result.waveforms, &result.held};
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(place);
+    tables[i]->assign(begin, begin + static_cast<std::ptrdiff_t>(sizes[i]));
+    place += sizes[i];
+  }
+  return result;
+}
+
+PieceSolver::PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+                         const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop)
+    : plan_(plan), input_(input), make_(solvers), tables_(tables), progress_(progress), stop_(stop) {}
+
+PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
+  while (lanes_.size() <= index) {
+    Lane lane;
+    lane.drive =
+        std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
+    lane.values.resize(plan_.sweep.names().size());
+    lanes_.push_back(std::move(lane));
+  }
+  excitations_.resize(lanes_.size());
+  responses_.resize(lanes_.size());
+  return lanes_[index];
+}
+
+double PieceSolver::point_value(std::size_t step) const {
+  return plan_.excitation_factor * plan_.frequencies[plan_.steps[step].frequency];
+}
+
+double PieceSolver::point_number(long line, std::size_t step) const {
+  return static_cast<double>(line) * static_cast<double>(plan_.steps.size()) + static_cast<double>(step);
+}
+
+RowPlace PieceSolver::place_of(const Lane& lane, std::size_t step) const {
+  return {lane.values, plan_.steps[step].is_downwards, plan_.frequencies[plan_.steps[step].frequency]};
+}
+
+/// Builds the structure of a lane's parameters unless it is there.
+void PieceSolver::require_structure(Lane& lane, double point) {
+  std::vector<double> wanted;
+  for (std::size_t i = 0; i < lane.values.size(); ++i)
+    if (plan_.is_structural[i]) wanted.push_back(lane.values[i]);
+  if (plan_.structure_follows_point) wanted.push_back(point);
+  if (structure_ && wanted == structure_values_) return;
+  solver_.reset();
+  free_.reset();
+  stuck_.reset();
+  structure_.reset();
+  structure_ = std::make_unique<ParametricStructure>(
+      build_structure(input_.study, lane.drive->parameters_at(lane.values, point)));
+  solver_ = make_.response(structure_->system, plan_.request);
+  structure_values_ = std::move(wanted);
+}
+
+void PieceSolver::take_line(Lane& lane, long line) {
+  plan_.sweep.values(line, lane.values);
+  std::vector<bool> others = plan_.is_linear;
+  others.flip();
+  lane.has_limits = plan_.sweep.is_first_but_for(line, others);
+}
+
+void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result) {
+  if (!free_) {
+    integrate::SteadyRequest request = plan_.request;
+    request.rates = false;
+    request.harmonics = {1};
+    free_ = make_.free(structure_->system, request);
+    stuck_ = make_.stuck(structure_->system, request);
+  }
+  free_->solve(excitation, integrate::SteadyStart::unloaded, free_response_);
+  stuck_->solve(excitation, integrate::SteadyStart::unloaded, stuck_response_);
+  tables_.linear.add(place, false, free_response_, result.linear);
+  tables_.linear.add(place, true, stuck_response_, result.held);
+}
+
+void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
+                               const integrate::SteadyResponse& response, PieceResult& result) {
+  const RowPlace place = place_of(lane, step);
+  tables_.main.add(place, excitation.angular_frequency, response, result.main);
+  SweepCounts& counts = result.counts;
+  const PointStatus status = point_status(response.status);
+  counts.by_status[static_cast<std::size_t>(status)] += 1.0;
+  counts.iterations += response.iterations;
+  if (status == PointStatus::unbounded && counts.first_unbounded < 0.0)
+    counts.first_unbounded = point_number(line, step);
+  if (!lane.drive->negative_loads().empty()) {
+    counts.negative_loads += 1.0;
+    if (counts.first_negative < 0.0) counts.first_negative = point_number(line, step);
+  }
+  // Both directions have the same limits.
+  if (lane.has_limits && step < plan_.frequencies.size()) solve_linear(place, excitation, result);
+  progress_.add(1);
+}
+
+void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
+  Lane& mine = lane(0);
+  integrate::Excitation& excitation = excitations_[0];
+  integrate::SteadyResponse& response = responses_[0];
+  take_line(mine, piece.first_line);
+  bool is_new_line = true;
+  for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {
+    if (stop_.load(std::memory_order_relaxed)) {
+      result.is_whole = false;
+      return;
+    }
+    const double point = point_value(step);
+    try {
+      if (is_new_line || plan_.structure_follows_point) {
+        require_structure(mine, point);
+        if (is_new_line) solver_->forget();
+        mine.drive->take_line(mine.values, *structure_);
+        is_new_line = false;
+      }
+      mine.drive->take_point(point, excitation);
+      solver_->solve(excitation, plan_.start, response);
+    } catch (const InvalidInput&) {
+      tables_.main.add_impossible(place_of(mine, step), result.main);
+      result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
+      if (result.counts.first_impossible < 0.0) result.counts.first_impossible = point_number(piece.first_line, step);
+      progress_.add(1);
+      continue;
+    }
+    finish_point(mine, piece.first_line, step, excitation, response, result);
+    if (plan_.waveform_points > 0 && plan_.waveform_at[plan_.steps[step].frequency])
+      tables_.waveforms.add(place_of(mine, step), solver_->waveform(plan_.waveform_points), result.waveforms);
+  }
+}
+
+// Returns false, with nothing in `result`, where one of the lines has a point that cannot be.
+bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
+  const auto count = static_cast<std::size_t>(piece.lines);
+  (void)lane(count - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    lanes_[i].result = {};
+    take_line(lanes_[i], piece.first_line + static_cast<long>(i));
+  }
+  try {
+    require_structure(lanes_[0], point_value(piece.first_step));
+    solver_->forget();
+    for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_line(lanes_[i].values, *structure_);
+    for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {
+      if (stop_.load(std::memory_order_relaxed)) {
+        result.is_whole = false;
+        break;
+      }
+      for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_point(point_value(step), excitations_[i]);
+      solver_->solve_lanes({excitations_.data(), count}, plan_.start, {responses_.data(), count});
+      for (std::size_t i = 0; i < count; ++i)
+        finish_point(lanes_[i], piece.first_line + static_cast<long>(i), step, excitations_[i], responses_[i],
+                     lanes_[i].result);
+    }
+  } catch (const InvalidInput&) {
+    double points = 0.0;
+    for (std::size_t i = 0; i < count; ++i) points += lanes_[i].result.counts.points();
+    progress_.add(-static_cast<long>(points));
+    return false;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const PieceResult& part = lanes_[i].result;
+    result.main.insert(result.main.end(), part.main.begin(), part.main.end());
+    result.linear.insert(result.linear.end(), part.linear.begin(), part.linear.end());
+    result.linear.insert(result.linear.end(), part.held.begin(), part.held.end());
+    result.counts.add(part.counts);
+  }
+  return true;
+}
+
+PieceResult PieceSolver::solve(const SweepPiece& piece) {
+  PieceResult result;
+  result.piece = piece;
+  if (piece.lines > 1 && solve_lanes(piece, result)) return result;
+  for (int i = 0; i < piece.lines && result.is_whole; ++i) {
+    solve_line({piece.first_line + i, 1, piece.first_step, piece.steps}, result);
+    if (piece.steps < plan_.steps.size()) continue;
+    result.linear.insert(result.linear.end(), result.held.begin(), result.held.end());
+    result.held.clear();
+  }
+  return result;
+}
+
+int PieceSolver::lanes() {
+  Lane& mine = lane(0);
+  take_line(mine, 0);
+  try {
+    require_structure(mine, point_value(0));
+  } catch (const InvalidInput&) {
+    return 1;
+  }
+  return solver_->lanes();
+}
+
+/// The first lane with one point of a line.
+PieceSolver::Lane& PieceSolver::take_point(long line, std::size_t step) {
+  Lane& mine = lane(0);
+  take_line(mine, line);
+  require_structure(mine, point_value(step));
+  mine.drive->take_line(mine.values, *structure_);
+  mine.drive->take_point(point_value(step), excitations_[0]);
+  return mine;
+}
+
+std::string PieceSolver::reason(long line, std::size_t step) {
+  try {
+    (void)take_point(line, step);
+    solver_->forget();
+    solver_->solve(excitations_[0], plan_.start, responses_[0]);
+  } catch (const InvalidInput& fault) {
+    return fault.what();
+  }
+  return {};
+}
+
+std::vector<ParametricExcitation::NegativeLoad> PieceSolver::negative_loads(long line, std::size_t step) {
+  return take_point(line, step).drive->negative_loads();
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,145 @@
+#include <rubato/analysis/modes.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
+#include <rubato/numerics/eigen_damped.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace rubato::analysis {
+namespace {
+
+constexpr Index default_count = 20;
+constexpr Index largest_dense = 3000;  // all modes of it take minutes
+
+const std::vector<std::string> limits{"free", "stuck"};
+
+struct LimitModes {
+  std::size_t limit;
+  numerics::DampedModes found;
+};
+
+bool has_complex(const std::vector<LimitModes>& all) {
+  for (const auto& [limit, found] : all)
+    for (const auto& mode : found.modes)
+      if (mode.is_complex) return true;
+  return false;
+}
+
+results::TableLayout layout_of(const std::string& name, const ModesPlan& plan, bool is_complex) {
+  const auto scalar = [](const std::string& variable, const std::string& unit, const std::string& description) {
+    return results::Block{variable, unit, description, "", {}};
+  };
+  results::Block limit = scalar("limit", "1", "free: sliders removed; stuck: sliders as springs");
+  limit.categories = limits;
+  results::TableLayout layout{
+      name,
+      "",
+      "row",
+      {limit, scalar("mode", "1", "number within the limit, by rising frequency"),
+       scalar("angular_frequency", "rad/s", "natural, |eigenvalue|"), scalar("frequency", "Hz", "natural"),
+       scalar("damping_ratio", "1", "-Re(eigenvalue) / |eigenvalue|; beyond 1 it does not oscillate"),
+       scalar("eigenvalue_real", "1/s", "the free motion is Re(shape exp(eigenvalue t))"),
+       scalar("eigenvalue_imaginary", "rad/s", "angular frequency of the damped motion")},
+      {{"type", "modes"}, {"normalisation", "conj(shape)^T M shape = 1; the largest entry is real and positive"}}};
+  // With q = shape * (modal coordinate): the latter in m sqrt(kg), for displacements and rotations alike.
+  add_blocks(plan.observed, {"shape", "1/sqrt(kg)", "shape, with a modal mass of 1"},
+             {"angle_shape", "rad/(m sqrt(kg))", "shape of the rotations, on the scale of the displacements"},
+             layout.blocks);
+  if (is_complex)
+    add_blocks(plan.observed, {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead"},
+               {"angle_shape_imaginary", "rad/(m sqrt(kg))", "imaginary part of the shape of the rotations"},
+               layout.blocks);
+  return layout;
+}
+
+void write(const std::string& name, const ModesPlan& plan, const std::vector<LimitModes>& all, results::Sink& sink) {
+  const bool is_complex = has_complex(all);
+  const auto rows = sink.open(layout_of(name, plan, is_complex));
+  for (const auto& [limit, found] : all) {
+    double number = 0.0;
+    for (const auto& mode : found.modes) {
+      std::vector<double> row{static_cast<double>(limit), ++number,
+                              mode.angular_frequency,     mode.angular_frequency / (2.0 * std::numbers::pi),
+                              mode.damping_ratio,         mode.eigenvalue.real(),
+                              mode.eigenvalue.imag()};
+      const Vector real = mode.shape.real(), imaginary = mode.shape.imag();
+      for (const auto& observed : plan.observed) row.push_back(observed.of(real));
+      if (is_complex)
+        for (const auto& observed : plan.observed) row.push_back(observed.of(imaginary));
+      rows->append(row);
+    }
+  }
+}
+
+std::string complaint(const std::vector<LimitModes>& all, Index count) {
+  for (const auto& [limit, found] : all) {
+    const auto held = static_cast<Index>(found.modes.size());
+    if (found.missing > 0)
+      return fmt::format("{} of the lowest {} modes of the limit {} were not found; ask for a few more or fewer",
+                         std::min(found.missing, count), count, limits[limit]);
+    if (held < count || !found.has_converged)
+      return fmt::format(
+          "the modes of the limit {} did not converge: {} of {}, the worst with a relative residual of {:.1e}; ask for "
+          "fewer",
+          limits[limit], held, count, found.residual);
+  }
+  return {};
+}
+
+}  // namespace
+
+ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
+                     const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
+  const std::string title = "analysis \"" + name + "\": ";
+  const Index n = system.size();
+  ModesPlan plan;
+  plan.count = std::min(n, default_count);
+  if (description.count) {
+    const Location& place = description.count->where.line > 0 ? description.count->where : where;
+    const double count = model::evaluate(*description.count, parameters, title + "count");
+    if (!(count >= 1.0) || count != std::floor(count))
+      throw InvalidInput(place, fmt::format("{}count must be a whole number of at least 1, got {}", title, count));
+    if (!(count <= static_cast<double>(n)))
+      throw InvalidInput(place, fmt::format("{}count is {}, but a model of {} coordinate{} has {} mode{}", title, count,
+                                            n, n == 1 ? "" : "s", n, n == 1 ? "" : "s"));
+    plan.count = static_cast<Index>(count);
+    if (n > largest_dense && numerics::is_dense_eigenproblem(n, plan.count))
+      throw InvalidInput(place,
+                         fmt::format("{}count is {}; of a model of {} coordinates ask for at most a third of the "
+                                     "modes, {}",
+                                     title, count, n, n / 3));
+  }
+  plan.observed = observed_or_all(description.observe, system);
+  return plan;
+}
+
+RunReport run_modes(const std::string& name, const ModesPlan& plan, const system::LocallyNonlinear& system,
+                    RunContext& context) {
+  const std::size_t limit_count = system.slider_count() > 0 ? 2 : 1;
+  RunReport report;
+  std::vector<LimitModes> all;
+  context.progress.begin(name, static_cast<double>(limit_count), "limits");
+  for (std::size_t limit = 0; limit < limit_count && !context.stop; ++limit) {
+    const SparseMatrix stiffness = limit == 0 ? system.stiffness() : system.stuck_stiffness();
+    all.push_back({limit, numerics::lowest_damped_modes(stiffness, system.damping(), system.mass(), plan.count)});
+    context.progress.advance(static_cast<double>(limit + 1));
+  }
+  context.progress.end();
+  write(name, plan, all, context.sink);
+  report.message = complaint(all, plan.count);
+  if (!report.message.empty()) {
+    report.status = RunStatus::failed;
+  } else if (all.size() < limit_count) {
+    report.status = RunStatus::interrupted;
+    report.message = fmt::format("interrupted after {} of {} limits", all.size(), limit_count);
+  }
+  for (const auto& [limit, found] : all) {
+    report.statistics.emplace_back("residual_" + limits[limit], fmt::format("{:.1e}", found.residual));
+    if (found.missing < 0) report.statistics.emplace_back("completeness_" + limits[limit], "not verified");
+  }
+  return report;
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <rubato/analysis/run_context.hpp>
+#include <rubato/analysis/transient_plan.hpp>
+
+namespace rubato::analysis {
+
+/// Natural modes of a linear model in the two limits of its sliders: `free`, all removed, and `stuck`, all of them
+/// springs kT. A model without sliders has the limit `free` only.
+struct ModesPlan {
+  Index count = 0;  ///< the lowest so many of each limit
+  std::vector<Observed> observed;
+};
+
+/// Evaluates a description. Throws InvalidInput, at its place, for a count that is no whole number from 1 to the number
+/// of coordinates, and for more than a third of the modes of a model beyond 3,000 coordinates.
+ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
+                     const system::LocallyNonlinear& system, const numerics::Parameters& parameters);
+
+/// One row a mode: limit, number, angular frequency, frequency, damping ratio, eigenvalue and shape (with phi^H M phi =
+/// 1; its imaginary part where damping makes a mode of either limit complex). Modes that did not converge, or that a
+/// count shows to be missing, are a failure; those found are written.
+RunReport run_modes(const std::string& name, const ModesPlan& plan, const system::LocallyNonlinear& system,
+                    RunContext& context);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/study_input.hpp>
+#include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/numerics/bound_formula.hpp>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A study's system at some values of its parameters, with what its loads need of it.
+struct ParametricStructure {
+  system::LocallyNonlinear system;
+  std::vector<Index> force_rows;  ///< the coordinate of each force of the description
+  Vector inertia;                 ///< M direction of the base motion [n] [kg]; empty where there is none
+};
+
+/// The structure for given values of all parameters. Negative normal loads count as zero. Throws InvalidInput.
+ParametricStructure build_structure(const model::StudyDescription& study, const numerics::Parameters& values);
+
+/// What drives a study's structure while parameters vary: the excitation at any values of some line parameters and of
+/// one point parameter (the excitation frequency), without building the model again. What does not follow the point
+/// parameter is evaluated once a line.
+class ParametricExcitation {
+ public:
+  /// A slider whose normal load came out negative, and counts as zero.
+  struct NegativeLoad {
+    std::size_t slider;
+    double load;  ///< [N]
+  };
+
+  /// @param line  places of the line parameters among all   @param point  that of the point parameter
+  ParametricExcitation(const StudyInput& input, const ParameterDependence& dependence, std::vector<std::size_t> line,
+                       std::size_t point);
+
+  /// Begins a line. The structure is that of these values; it is looked at only here.
+  void take_line(std::span<const double> values, const ParametricStructure& structure);
+  /// Writes the excitation at a point of the line into `out`, which must be the same object for all points of a line.
+  /// Throws InvalidInput for values that cannot be: not finite, negative frequencies, no common period.
+  void take_point(double value, integrate::Excitation& out);
+
+  /// All parameters at values of the line and of the point, for building a structure.
+  const numerics::Parameters& parameters_at(std::span<const double> line, double point);
+  /// Sliders with negative normal loads at the last point.
+  const std::vector<NegativeLoad>& negative_loads() const { return negative_loads_; }
+
+ private:
+  /// A number or a formula of the parameters, and whether it follows the point parameter.
+  struct Value {
+    const model::Quantity* quantity = nullptr;
+    std::optional<numerics::BoundFormula> formula;
+    bool follows_point = false;
+    double now = 0.0;
+  };
+  struct Load {
+    Value amplitude, frequency, phase;
+    double frequency_factor = 1.0;
+    std::optional<model::BaseMotionDescription::Of> base;  ///< of the base motion: what the law gives
+    std::size_t force = 0;                                 ///< else: its place in the description
+    std::string part;                                      ///< for messages
+
+    double angular_frequency = 0.0;          ///< [rad/s]
+    std::complex<double> complex_amplitude;  ///< Re(... exp(i omega t))
+    int order = 0;                           ///< over the fundamental; 0: static
+  };
+  struct Limit {
+    Value coefficient, load;
+    std::string part;
+  };
+
+  Value value_of(const model::Quantity& quantity);
+  Load load_of(const model::HarmonicDescription& law, const std::string& part);
+  void evaluate(Value& value, const std::string& part, const char* key) const;
+  void refresh_parameters();
+  bool refresh_loads();
+  void refresh_limits(integrate::Excitation& out);
+  bool orders_hold() const;
+  void find_orders();
+  void fill(integrate::Excitation& out) const;
+
+  const StudyInput& input_;
+  const ParameterDependence& dependence_;
+  std::vector<std::size_t> line_, followers_;
+  std::size_t point_;
+  std::vector<double> values_;                                            ///< of all parameters
+  std::vector<std::pair<std::size_t, numerics::BoundFormula>> formulas_;  ///< of parameters, in order
+  numerics::Parameters named_;
+  std::vector<Load> loads_;
+  std::vector<Limit> limits_;
+  std::vector<NegativeLoad> negative_loads_;
+  const ParametricStructure* structure_ = nullptr;
+  bool is_new_line_ = true;
+};
+
+}  // namespace rubato::analysis

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// Some curves over x: writes their values at x [c]; false where there are none.
+using Curves = std::function<bool(double x, Vector& values)>;
+
+/// A local maximum of one of them, or its value at an end of the range that it falls off from.
+struct Peak {
+  enum class Kind { interior, lower_end, upper_end };
+  Index curve = 0;
+  double at = 0.0, value = 0.0;
+  double slope = 0.0;  ///< of the curve there: round-off where it is interior
+  Kind kind = Kind::interior;
+};
+
+/// Where peaks are looked for.
+struct PeakRange {
+  double from = 0.0, to = 0.0;
+  int samples = 33;             ///< equally spaced, at least 3
+  std::vector<double> besides;  ///< where a narrow peak may be: other samples
+};
+
+/// All local maxima between the samples, each where its slope vanishes: bracketed by the samples, approached by
+/// parabolas (Brent 1973), and finished by Newton's method on central differences of 3e-6 x, which place the maximum of
+/// curves exact to 1e-13 within 1e-9 x. The highest first.
+std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range);
+
+/// The maximum that a known one has become after a small change of the curves; nothing if it is gone.
+std::optional<Peak> follow_peak(const Curves& curves, const PeakRange& range, const Peak& known);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <rubato/integrate/method.hpp>
+#include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/model/description.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace rubato::analysis {
+
+/// Which solver of steady responses, and how it is asked to work.
+struct SteadyRoute {
+  using Kind = model::FrequencyResponseDescription::Route;
+
+  Kind kind = Kind::periodic;
+  double tolerance = 0.0;     ///< relative; 0: the route's own
+  integrate::Method method;   ///< of time marching, as the two below
+  long steps_per_period = 0;  ///< 0: chosen by the error
+  long max_periods = 0;       ///< 0: the route's own
+};
+
+/// As the study file calls it.
+std::string route_name(SteadyRoute::Kind kind);
+
+/// Makes solvers of steady responses for one structure after another.
+struct SteadySolvers {
+  using Make = std::function<std::unique_ptr<integrate::SteadySolver>(const system::LocallyNonlinear&,
+                                                                      const integrate::SteadyRequest&)>;
+  Make response;     ///< with friction
+  Make free, stuck;  ///< the two linear limits
+};
+
+/// The solvers of a route. A system without sliders is linear: unless it is marched, its response is that of the free
+/// limit.
+SteadySolvers steady_solvers(const SteadyRoute& route);
+
+}  // namespace rubato::analysis

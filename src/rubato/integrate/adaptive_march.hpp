@@ -1,0 +1,64 @@
+#pragma once
+
+#include <rubato/integrate/controllers/controller.hpp>
+#include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/estimators/estimator.hpp>
+
+namespace rubato::integrate {
+
+/// How a march picks its steps.
+struct StepPlan {
+  Controller controller = PiControl{};
+  double first = 0.0;          ///< [s]; 0: the estimator's, and after a jump of a load its again
+  double smallest = 0.0;       ///< a controller that asks for less ends the march [s]
+  double largest = HUGE_VAL;   ///< [s]
+  bool locate_events = false;  ///< steps end where a slider changes its state
+  bool rebuild = true;  ///< the auxiliary acceleration when the step changes; the paper of Cardona and Cassano does not
+};
+
+enum class TryOutcome {
+  accepted,
+  error_too_large,  ///< the controller rejected it
+  not_converged,    ///< the step failed and is halved; likewise the next two
+  not_finite,
+  singular,
+  event,  ///< ended beyond, or not quite at, a transition that is being located
+};
+
+/// One try of a step, for the history.
+struct StepTry {
+  double t = 0.0;  ///< its start [s]
+  double step = 0.0;
+  double error = 0.0;  ///< over the tolerance; NaN where there was none to estimate
+  TryOutcome outcome = TryOutcome::accepted;
+};
+
+class TryLog {
+ public:
+  virtual ~TryLog() = default;
+  virtual void tried(const StepTry& step_try) = 0;
+};
+
+struct AdaptiveReport {
+  MarchReport march;
+  long rejected = 0;  ///< for their error
+  long failed = 0;    ///< not converged, not finite or singular: halved
+  long events = 0;    ///< transitions located
+  long event_tries = 0;
+  long restarts = 0;  ///< after jumps of loads and transitions
+  long solves = 0;
+  long factorisations = 0;
+  double smallest_step = HUGE_VAL, largest_step = 0.0;  ///< accepted [s]
+};
+
+/// The loop with steps that choose themselves: from state.t to `end`, which the last step meets exactly. No step passes
+/// a row of a table of loads; steps towards one are made equal. A rejected try leaves no trace: the next starts from
+/// the same bits.
+/// @param state     start, with the acceleration of equilibrium as its auxiliary one (consistent_start); on return the
+///                  last accepted state
+/// @param observer  may be null   @param log  may be null
+AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan,
+                     const system::LocallyNonlinear& system, system::State& state, double end,
+                     Observer* observer = nullptr, TryLog* log = nullptr);
+
+}  // namespace rubato::integrate

@@ -1,0 +1,73 @@
+#include <rubato/integrate/estimators/error_scales.hpp>
+#include <rubato/integrate/estimators/response_scales.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::integrate {
+
+ErrorScales::ErrorScales(const system::LocallyNonlinear& system, double duration, int derivative)
+    : system_(system),
+      norm_(system),
+      product_(system.size()),
+      duration_(duration),
+      derivative_(derivative),
+      is_damped_(system.damping().nonZeros() > 0) {}
+
+void ErrorScales::start(const system::State& state) {
+  y_ = rate_ = 0.0;
+  steps_ = 0;
+  expect(state);
+}
+
+void ErrorScales::expect(const system::State& state) {
+  const ResponseScales scales = response_scales(system_, state, state.auxiliary_acceleration, duration_);
+  const double omega = scales.frequency;
+  size_ = std::max(size_, scales.size);
+  third_at_start_ = omega * omega * omega * scales.size;
+  y_ = std::pow(std::pow(omega, derivative_) * scales.size, 2);
+  rate_ = omega * omega * y_;
+}
+
+double ErrorScales::frequency() const {
+  const double slowest = 1.0 / duration_;
+  return std::max(slowest, y_ > 0.0 ? std::sqrt(rate_ / y_) : 0.0);
+}
+
+double ErrorScales::memory() const {
+  const double forgotten = std::max(0.0, damping_) * duration_;
+  return forgotten > 1e-8 ? duration_ * -std::expm1(-forgotten) / forgotten : duration_;
+}
+
+double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to) const {
+  double size = size_, omega = frequency();
+  if (!(size > 0.0)) {  // at rest until now: by what it is about to do
+    const ResponseScales scales = response_scales(system_, to, to.auxiliary_acceleration, duration_);
+    if (scales.size == 0.0) return 0.0;
+    size = std::max(size, scales.size);
+    omega = scales.frequency;
+  }
+  return std::sqrt(dq_squared + dv_squared / (omega * omega)) / size;
+}
+
+void ErrorScales::accept(const Vector& shape, double shape_squared, double y, double rate, const system::State& to,
+                         double h) {
+  if (!(y > 0.0)) return;
+  if (!(y_ > 0.0)) expect(to);  // at rest until now
+  const double share = -std::expm1(-frequency() * h / (2.0 * std::numbers::pi));
+  if (rate >= 0.0) {
+    y_ += share * (y - y_);
+    rate_ += share * (rate - rate_);
+  }
+  constexpr long stride = 4;
+  if (steps_++ % stride != 0) return;
+  size_ = std::max(size_, norm_(to.q));
+  if (!is_damped_) return;
+  product_.noalias() = system_.damping() * shape;
+  const double damping = 0.5 * shape.dot(product_) / shape_squared;
+  const double weight = -std::expm1(-static_cast<double>(stride) * frequency() * h);
+  damping_ = damping_ < 0.0 ? damping : damping_ + weight * (damping - damping_);
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <rubato/integrate/estimators/mass_norm.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::integrate {
+
+/// By what a local error is measured: the size s of the response, its frequency omega, which turns an error of velocity
+/// into one of displacement, and the time T over which errors add up.
+///
+/// omega^2 = <|y'|^2>/<|y|^2> of what the error is made of, both averaged over about a period; what the start promises
+/// stands in for the past, since y alone may begin at zero. T = (1 - exp(-r t_end))/r: the whole march
+/// without damping, the time over which an error is forgotten with it. What costs products with the matrices is looked
+/// at on every fourth step: it changes over periods.
+class ErrorScales {
+ public:
+  /// @param derivative  of q that the y of accept() is: 3 or 1
+  ErrorScales(const system::LocallyNonlinear& system, double duration, int derivative);
+
+  void start(const system::State& state);
+
+  /// sqrt(|dq|_M^2 + |dv|_M^2/omega^2)/s; where nothing has moved before `to`, size and frequency are those of `to`.
+  double relative(double dq_squared, double dv_squared, const system::State& to) const;
+
+  /// Takes in an accepted step.
+  /// @param shape  whose damping is that of the error [n], |shape|_M^2 beside it
+  /// @param y      |y|_M^2   @param rate  |y'|_M^2, negative where unknown
+  void accept(const Vector& shape, double shape_squared, double y, double rate, const system::State& to, double h);
+
+  double size() const { return size_; }
+  double frequency() const;
+  double memory() const;
+  double mean_square() const { return y_; }  ///< of y
+  /// |q'''|_M to expect after start().
+  double third_derivative() const { return third_at_start_; }
+
+ private:
+  void expect(const system::State& state);
+
+  const system::LocallyNonlinear& system_;
+  MassNorm norm_;
+  Vector product_;
+  double duration_;
+  int derivative_;
+  bool is_damped_;
+  double size_ = 0.0, third_at_start_ = 0.0;
+  double y_ = 0.0, rate_ = 0.0;  // averages of |y|^2 and |y'|^2
+  double damping_ = -1.0;        // r [1/s], averaged; negative: unknown
+  long steps_ = 0;
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,97 @@
+#include <rubato/integrate/estimators/error_constants.hpp>
+#include <rubato/integrate/estimators/error_scales.hpp>
+#include <rubato/integrate/estimators/estimators.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace rubato::integrate {
+namespace {
+
+/// J = A1 - A0 is h q''' in the middle of the step; the difference of two of them gives q''''. A restart leaves the
+/// auxiliary acceleration where it must settle first, so that the first J after it is good for q''' alone.
+class LocalErrorEstimator final : public Estimator {
+ public:
+  LocalErrorEstimator(const LocalError& kind, const ErrorConstants& constants, const system::LocallyNonlinear& system,
+                      double duration)
+      : tolerance_(kind.tolerance),
+        c_(constants),
+        scales_(system, duration, 3),
+        norm_(system),
+        now_(system.size()),
+        last_(system.size()) {}
+
+  void start(const system::State& state) override {
+    scales_.start(state);
+    forget();
+  }
+
+  double error(const system::State& from, const system::State& to, double h) override {
+    now_.jump = to.auxiliary_acceleration - from.auxiliary_acceleration;
+    now_.step = h;
+    now_.product = norm_.times(now_.jump);
+    now_.squared = now_.jump.dot(now_.product);
+    now_.third = now_.squared / (h * h);
+    now_.fourth = -1.0;
+    double dq_squared = now_.squared, dv_squared;
+    if (known_ >= 2) {
+      // q'''' = (J/h - J_last/h_last) over the distance of the two middles.
+      const double distance = 0.5 * (h + last_.step) + c_.shift * (h - last_.step), ratio = 1.0 / last_.step;
+      const double both = last_.jump.dot(now_.product);
+      const auto squared = [&](double on_now, double on_last) {
+        return std::fmax(
+            0.0, on_now * on_now * now_.squared + 2.0 * on_now * on_last * both + on_last * on_last * last_.squared);
+      };
+      now_.fourth = squared(1.0 / (h * distance), -ratio / distance);
+      const double next = c_.velocity_next * h * h * h / distance;
+      dv_squared = squared(c_.velocity * h + next / h, -next * ratio);
+    } else {
+      // J alone may stand at a zero of its own.
+      dq_squared = std::fmax(dq_squared, h * h * scales_.mean_square());
+      const double dv = std::abs(c_.velocity) * h + std::abs(c_.velocity_next) * h * h * scales_.frequency();
+      dv_squared = dv * dv * dq_squared;
+    }
+    const double dq = c_.displacement * h * h;
+    return scales_.relative(dq * dq * dq_squared, dv_squared, to) * scales_.memory() / (h * tolerance_);
+  }
+
+  void accept(const system::State& to) override {
+    scales_.accept(now_.jump, now_.squared, now_.third, now_.fourth, to, now_.step);
+    std::swap(now_, last_);
+    if (known_ < 2) ++known_;
+  }
+
+  void forget() override { known_ = 0; }
+  int exponent() const override { return c_.order; }
+
+  double first_step() const override {
+    const double third = scales_.third_derivative(), omega = scales_.frequency();
+    if (!(third > 0.0)) return std::numeric_limits<double>::infinity();
+    const double accepted = 0.5 * tolerance_ * scales_.size() / scales_.memory();
+    if (c_.order == 1) return accepted * omega / (std::abs(c_.velocity) * third);
+    return std::sqrt(accepted / (std::hypot(c_.displacement, c_.velocity_next) * third));
+  }
+
+ private:
+  struct Difference {
+    explicit Difference(Index n) : jump(n), product(n) {}
+    Vector jump, product;  // J and M J
+    double step = 0.0, squared = 0.0, third = 0.0, fourth = -1.0;
+  };
+
+  double tolerance_;
+  ErrorConstants c_;
+  ErrorScales scales_;
+  MassNorm norm_;
+  Difference now_, last_;
+  int known_ = 0;  // accepted steps since the start or the last kink, up to two
+};
+
+}  // namespace
+
+std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const ErrorConstants& constants,
+                                            const system::LocallyNonlinear& system, double duration) {
+  return std::make_unique<LocalErrorEstimator>(kind, constants, system, duration);
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,208 @@
+#include <rubato/integrate/steady/complex_ldlt.hpp>
+#include <rubato/integrate/steady/condensed_structure_routes.hpp>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <Eigen/SparseLU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rubato::integrate {
+namespace {
+
+using Outcome = CondensedStructure::Outcome;
+using Columns = CondensedStructure::Columns;
+using Complex = std::complex<double>;
+
+// What of a singular direction a column must see to be moved by it.
+constexpr double seen = 1e-9;
+
+class DenseFactorisation final : public CondensedStructure::Route {
+ public:
+  explicit DenseFactorisation(const Columns& columns)
+      : columns_(columns),
+        mass_(columns.system.mass()),
+        damping_(columns.system.damping()),
+        stiffness_(columns.system.stiffness()) {}
+
+  void set_loads() override {}
+
+  Outcome condense(double w, double held, ComplexMatrix& g) override {
+    const Index n = mass_.rows(), m = columns_.sliders.cols(), e = columns_.loads.cols();
+    factorise(w, held);
+    Matrix driven(n, m + e);
+    driven << columns_.sliders, columns_.loads;
+    if (is_singular_) {
+      for (const Index direction : singular_directions()) {
+        if (sees(columns_.sliders, direction)) return Outcome::sliders_needed;
+        if (sees(columns_.loads, direction)) return Outcome::resonance;
+      }
+    }
+    ComplexMatrix position;
+    solve(driven.cast<Complex>(), position);
+    g = columns_.project(position);
+    return !is_singular_ && condition_ < nearly_singular ? Outcome::near_resonance : Outcome::regular;
+  }
+
+  void expand(double w, double held, const ComplexVector& forces, ComplexVector& position) override {
+    factorise(w, held);
+    ComplexMatrix out;
+    solve(columns_.sliders.cast<Complex>() * forces.head(columns_.sliders.cols()) +
+              columns_.loads.cast<Complex>() * forces.tail(columns_.loads.cols()),
+          out);
+    position = out;
+  }
+
+  std::vector<CondensedStructure::Resonance> resonances(double w) override {
+    std::vector<CondensedStructure::Resonance> found;
+    factorise(w, 0.0);
+    if (!is_singular_) return found;
+    for (const Index direction : singular_directions()) {
+      ComplexVector phi = svd_.matrixV().col(direction).cwiseProduct(scale_);
+      Index largest;
+      phi.cwiseAbs().maxCoeff(&largest);
+      phi /= phi[largest];
+      const Vector real = phi.real();
+      found.push_back({columns_.sliders.transpose() * real, columns_.loads.transpose() * real});
+    }
+    return found;
+  }
+
+ private:
+  // S Z S with S = 1/sqrt(|K_ii| + held + w^2 M_ii), so that metres and radians weigh the same.
+  void factorise(double w, double held) {
+    ComplexMatrix z = stiffness_.cast<Complex>() - (w * w) * mass_.cast<Complex>();
+    z += Complex(0.0, w) * damping_.cast<Complex>();
+    if (held > 0.0)
+      z += (columns_.sliders * (held * columns_.slider_stiffness).asDiagonal() * columns_.sliders.transpose())
+               .cast<Complex>();
+    scale_ = (z.diagonal().cwiseAbs() + (w * w) * mass_.diagonal()).cwiseSqrt();
+    for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
+    z = scale_.asDiagonal() * z * scale_.asDiagonal();
+    factor_.compute(z);
+    condition_ = factor_.rcond();
+    is_singular_ = !(condition_ > singular);
+    if (is_singular_) svd_.compute(z, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  }
+
+  std::vector<Index> singular_directions() const {
+    std::vector<Index> directions;
+    const Vector& values = svd_.singularValues();
+    for (Index i = 0; i < values.size(); ++i)
+      if (!(values[i] > 10.0 * singular * values[0])) directions.push_back(i);
+    return directions;
+  }
+
+  bool sees(const Matrix& columns, Index direction) const {
+    const ComplexVector phi = svd_.matrixV().col(direction).cwiseProduct(scale_);
+    for (Index j = 0; j < columns.cols(); ++j)
+      if (std::abs((columns.col(j).cast<Complex>().transpose() * phi)(0)) > seen * columns.col(j).norm() * phi.norm())
+        return true;
+    return false;
+  }
+
+  void solve(const ComplexMatrix& forces, ComplexMatrix& position) const {
+    const ComplexMatrix scaled = scale_.asDiagonal() * forces;
+    if (!is_singular_) {
+      position = scale_.asDiagonal() * ComplexMatrix(factor_.solve(scaled));
+      return;
+    }
+    ComplexMatrix shares = svd_.matrixU().adjoint() * scaled;
+    const Vector& values = svd_.singularValues();
+    for (Index i = 0; i < values.size(); ++i)
+      shares.row(i) *= values[i] > 10.0 * singular * values[0] ? 1.0 / values[i] : 0.0;
+    position = scale_.asDiagonal() * ComplexMatrix(svd_.matrixV() * shares);
+  }
+
+  const Columns& columns_;
+  Matrix mass_, damping_, stiffness_;
+  Vector scale_;
+  Eigen::PartialPivLU<ComplexMatrix> factor_;
+  Eigen::JacobiSVD<ComplexMatrix> svd_;
+  double condition_ = 0.0;
+  bool is_singular_ = false;
+};
+
+/// L D L^T of the sparse complex symmetric Z without pivoting, judged by the residual of its solutions; where that is
+/// too large, LU with pivoting.
+class SparseFactorisation final : public CondensedStructure::Route {
+ public:
+  explicit SparseFactorisation(const Columns& columns) : columns_(columns) {
+    const auto& system = columns.system;
+    const SparseMatrix stuck = system.stuck_stiffness();
+    springs_ = stuck - system.stiffness();
+    // Sums of zeros keep the entries of every matrix in the pattern.
+    const SparseMatrix pattern = SparseMatrix(0.0 * system.mass() + 0.0 * system.damping()) + 0.0 * stuck;
+    mass_ = pattern + system.mass();
+    damping_ = pattern + system.damping();
+    stiffness_ = pattern + system.stiffness();
+    springs_ = pattern + springs_;
+    matrix_ = pattern.cast<Complex>();
+    factor_.analyse(matrix_);
+  }
+
+  void set_loads() override {}
+
+  Outcome condense(double w, double held, ComplexMatrix& g) override {
+    Matrix driven(columns_.sliders.rows(), columns_.driven());
+    driven << columns_.sliders, columns_.loads;
+    ComplexMatrix position;
+    if (!solve(w, held, driven.cast<Complex>(), position))
+      return held == 0.0 && columns_.sliders.cols() > 0 ? Outcome::sliders_needed : Outcome::resonance;
+    g = columns_.project(position);
+    return Outcome::regular;
+  }
+
+  void expand(double w, double held, const ComplexVector& forces, ComplexVector& position) override {
+    ComplexMatrix out;
+    const ComplexMatrix load = columns_.sliders.cast<Complex>() * forces.head(columns_.sliders.cols()) +
+                               columns_.loads.cast<Complex>() * forces.tail(columns_.loads.cols());
+    if (solve(w, held, load, out))
+      position = out;
+    else
+      position.setConstant(load.rows(), Complex(std::numeric_limits<double>::infinity(), 0.0));
+  }
+
+ private:
+  bool solve(double w, double held, const ComplexMatrix& load, ComplexMatrix& position) {
+    for (Index i = 0; i < matrix_.nonZeros(); ++i)
+      matrix_.valuePtr()[i] =
+          Complex(stiffness_.valuePtr()[i] + held * springs_.valuePtr()[i] - w * w * mass_.valuePtr()[i],
+                  w * damping_.valuePtr()[i]);
+    if (factor_.factorise(matrix_)) {
+      factor_.solve(load, position);
+      if (is_solved(load, position)) return true;
+    }
+    Eigen::SparseLU<Eigen::SparseMatrix<Complex>> pivoting;
+    pivoting.compute(matrix_);
+    if (pivoting.info() != Eigen::Success) return false;
+    position = pivoting.solve(load);
+    return is_solved(load, position);
+  }
+
+  // A small residual against a bounded answer: a singular matrix leaves one of the two unfulfilled.
+  bool is_solved(const ComplexMatrix& load, const ComplexMatrix& position) const {
+    const double residual = (load - matrix_ * position).cwiseAbs().maxCoeff();
+    const double size = matrix_.coeffs().cwiseAbs().maxCoeff() * position.cwiseAbs().maxCoeff();
+    return residual <= 1e-9 * load.cwiseAbs().maxCoeff() && singular * size <= load.cwiseAbs().maxCoeff();
+  }
+
+  const Columns& columns_;
+  SparseMatrix mass_, damping_, stiffness_, springs_;  ///< all of one pattern
+  Eigen::SparseMatrix<Complex> matrix_;
+  ComplexLdlt factor_;
+};
+
+}  // namespace
+
+std::unique_ptr<CondensedStructure::Route> dense_factorisation(const Columns& columns) {
+  return std::make_unique<DenseFactorisation>(columns);
+}
+
+std::unique_ptr<CondensedStructure::Route> sparse_factorisation(const Columns& columns) {
+  return std::make_unique<SparseFactorisation>(columns);
+}
+
+}  // namespace rubato::integrate

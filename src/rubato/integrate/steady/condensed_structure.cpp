@@ -1,0 +1,59 @@
+#include <rubato/integrate/steady/condensed_structure_routes.hpp>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr Index most_state_space = 60;  // coordinates: the eigenproblem takes 25 (2n)^3 operations, unsymmetric
+constexpr Index most_dense = 300;       // coordinates, where C is sparse
+constexpr double full = 0.05;           // part of C that is not zero, from which it counts as a full matrix
+
+}  // namespace
+
+CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
+                                       const std::vector<SteadyRequest::Observed>& observed) {
+  const Index n = system.size(), m = system.slider_count();
+  columns_ = std::make_unique<Columns>(Columns{system, Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
+  for (Index i = 0; i < m; ++i) {
+    const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
+    columns_->slider_stiffness[i] = slider.stiffness;
+    if (slider.first != ground) columns_->sliders(slider.first, i) += 1.0;
+    if (slider.second != ground) columns_->sliders(slider.second, i) -= 1.0;
+  }
+  const auto entries = static_cast<double>(system.damping().nonZeros());
+  const bool is_small = n <= most_dense || entries > full * static_cast<double>(n) * static_cast<double>(n);
+  factorisation_ = is_small ? dense_factorisation(*columns_) : sparse_factorisation(*columns_);
+  if (is_small) route_ = real_modes(*columns_);
+  if (!route_ && n <= most_state_space) route_ = complex_modes(*columns_);
+}
+
+CondensedStructure::~CondensedStructure() = default;
+CondensedStructure::CondensedStructure(CondensedStructure&&) noexcept = default;
+
+Index CondensedStructure::slider_count() const { return columns_->sliders.cols(); }
+Index CondensedStructure::load_count() const { return columns_->loads.cols(); }
+Index CondensedStructure::observed_count() const { return static_cast<Index>(columns_->observed.size()); }
+
+void CondensedStructure::set_loads(const Matrix& patterns) {
+  columns_->loads = patterns;
+  if (route_) route_->set_loads();
+  factorisation_->set_loads();
+}
+
+CondensedStructure::Outcome CondensedStructure::condense(double w, double held, ComplexMatrix& receptance) {
+  Route& route = route_ && held == 0.0 ? *route_ : *factorisation_;
+  return route.condense(w, held, receptance);
+}
+
+void CondensedStructure::expand(double w, double held, const ComplexVector& forces, ComplexVector& position) {
+  (route_ && held == 0.0 ? *route_ : *factorisation_).expand(w, held, forces, position);
+}
+
+std::vector<CondensedStructure::Resonance> CondensedStructure::resonances(double w) {
+  return (route_ ? *route_ : *factorisation_).resonances(w);
+}
+
+double CondensedStructure::highest_frequency() const {
+  return (route_ ? *route_ : *factorisation_).highest_frequency();
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <rubato/integrate/steady/excitation.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// A first guess of the periodic state at t = 0: the response to the fundamental load with each slider replaced by the
+/// stiffness and damping that do the same for one harmonic (Masing loops; Griffin 1980), and the linear response to the
+/// other harmonics and the static loads added. Offsets of the sliders are zero.
+/// @param q, v  [n] [m], [m/s]   @param slider_force  [m] [N]
+/// Returns false where the equations have no finite solution: a resonance without damping.
+bool equivalent_linear_state(const system::LocallyNonlinear& system, const Excitation& excitation, Vector& q, Vector& v,
+                             Vector& slider_force);
+
+/// Whether the structure with some sliders stuck and the others gone is at a resonance without damping for one of the
+/// loads: its dynamic stiffness is singular to round-off.
+bool is_at_undamped_resonance(const system::LocallyNonlinear& system, const Excitation& excitation,
+                              const std::vector<bool>& sticks);
+
+}  // namespace rubato::integrate

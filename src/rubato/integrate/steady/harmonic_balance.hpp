@@ -1,0 +1,53 @@
+#pragma once
+
+#include <rubato/integrate/steady/condensed_structure.hpp>
+#include <rubato/integrate/steady/hysteresis_loop.hpp>
+#include <rubato/integrate/steady/steady_solver.hpp>
+
+#include <Eigen/LU>
+
+#include <memory>
+#include <vector>
+
+namespace rubato::integrate {
+
+struct HarmonicBalanceOptions {
+  double tolerance = 1e-3;            ///< wanted relative error of the amplitudes by truncation [-]
+  double residual_tolerance = 2e-12;  ///< of the balance, relative to the relative displacements [-]
+  int most_harmonics = 63;            ///< highest order that may be balanced
+};
+
+/// Steady responses as truncated Fourier series (harmonic balance).
+///
+/// The structure is condensed exactly to the relative displacements u = B^T q of the sliders, harmonic by harmonic:
+///
+///   U_k - U_k(linear) + R_k F_k(U) = 0,   R_k = B^T Z(k w)^-1 B,   k = 0 (where the answer may have a mean), 1, 2, ...
+///
+/// and solved by Newton with the closed-form derivative of the slider forces (HysteresisLoop): no sampling, so that
+/// truncation is the only error. Even orders and the mean are left out where loads and memory are half-wave symmetric.
+///
+/// Orders are added until the estimated error is below the tolerance. The estimate is what the first orders left out
+/// would do: their own part in the observed coordinates and, through the Jacobian, the change of the orders kept.
+///
+/// Newton starts from an extrapolation of the points before. Where it fails, the friction limits are lowered step by
+/// step from a value at which no slider slips, whose answer is linear.
+class HarmonicBalanceSolver final : public SteadySolver {
+ public:
+  /// Throws InvalidInput for options that are not positive.
+  HarmonicBalanceSolver(const system::LocallyNonlinear& system, SteadyRequest request,
+                        HarmonicBalanceOptions options = {});
+  ~HarmonicBalanceSolver() override;
+
+  void solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
+  Waveform waveform(int points) const override;
+  void forget() override;
+
+  /// The highest order balanced at the last point.
+  int highest_order() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace rubato::integrate

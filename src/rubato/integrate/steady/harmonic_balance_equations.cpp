@@ -1,0 +1,294 @@
+#include <rubato/integrate/steady/harmonic_balance_equations.hpp>
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+
+void SliderSeries::resize(const Orders& new_orders, bool with_mean, Index sliders) {
+  const ComplexMatrix before = std::move(coefficients);
+  const Orders old = orders;
+  coefficients = ComplexMatrix::Zero(new_orders.count, sliders);
+  for (int i = 0; i < new_orders.count; ++i) {
+    const int k = new_orders.at(i);
+    if (k <= old.highest() && (k - 1) % old.stride == 0 && before.cols() == sliders)
+      coefficients.row(i) = before.row((k - 1) / old.stride);
+  }
+  if (mean.size() != sliders || !with_mean) mean = Vector::Zero(sliders);
+  orders = new_orders;
+  has_mean = with_mean;
+}
+
+void HarmonicBalanceEquations::set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits,
+                                   const Vector& offsets) {
+  harmonics_ = &harmonics;
+  limits_ = limits;
+  offsets_ = offsets;
+  active_.clear();
+  // A slider without a limit has no force, but where its spring is held in Z its displacement must be known.
+  const bool is_held = std::any_of(harmonics.begin(), harmonics.end(), [](const auto& h) { return h.held > 0.0; });
+  for (Index j = 0; j < limits.size(); ++j)
+    if (limits[j] > 0.0 || is_held) active_.push_back(j);
+}
+
+bool HarmonicBalanceEquations::any_slips() const {
+  return std::any_of(active_.begin(), active_.end(),
+                     [&](Index j) { return loops_[static_cast<std::size_t>(j)].slips(); });
+}
+
+double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
+  const int count = series.orders.count;
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  const auto& harmonics = *harmonics_;
+  force_.resize(count, stiffness_.size());
+  mean_force_.resize(stiffness_.size());
+  displacement_ = linear_ = 0.0;
+  for (const Index j : active_) {
+    HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    const Complex* const u = series.coefficients.data() + j * count;
+    loop.pass(stiffness_[j], limits_[j], series.mean[j], series.orders, u, offsets_[j]);
+    for (int i = 0; i < count; ++i) {
+      const double held = harmonics[static_cast<std::size_t>(i) + 1].held * stiffness_[j];
+      force_(i, j) = loop.force(series.orders.at(i)) - held * u[i];
+      displacement_ = std::max(displacement_, std::abs(u[i].real()) + std::abs(u[i].imag()));
+    }
+    if (series.has_mean) {
+      mean_force_[j] = loop.mean_force() - harmonics[0].held * stiffness_[j] * series.mean[j];
+      displacement_ = std::max(displacement_, std::abs(series.mean[j]));
+    }
+  }
+  residual_.resize(rows * static_cast<Index>(active_.size()));
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const Index row = active_[a], base = static_cast<Index>(a) * rows;
+    if (series.has_mean) {
+      double sum = series.mean[row] - harmonics[0].linear[row].real();
+      linear_ = std::max(linear_, std::abs(harmonics[0].linear[row].real()));
+      for (const Index j : active_) sum += harmonics[0].receptance(row, j).real() * mean_force_[j];
+      residual_[base] = sum;
+    }
+    for (int i = 0; i < count; ++i) {
+      const CondensedHarmonic& harmonic = harmonics[static_cast<std::size_t>(i) + 1];
+      const Complex linear = harmonic.linear[row];
+      linear_ = std::max(linear_, std::abs(linear.real()) + std::abs(linear.imag()));
+      Complex sum = series.coefficients(i, row) - linear;
+      for (const Index j : active_) sum += product(harmonic.receptance(row, j), force_(i, j));
+      residual_[base + shift + 2 * i] = sum.real();
+      residual_[base + shift + 2 * i + 1] = sum.imag();
+    }
+  }
+  return residual_.size() == 0 ? 0.0 : residual_.cwiseAbs().maxCoeff();
+}
+
+void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix& jacobian) {
+  const int count = series.orders.count;
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  const auto& harmonics = *harmonics_;
+  const Index size = rows * static_cast<Index>(active_.size());
+  jacobian.setIdentity(size, size);
+  columns_.resize(count, rows);  // dF_k of one slider by its own unknowns
+  Vector by_mean(rows);
+  for (std::size_t b = 0; b < active_.size(); ++b) {
+    const Index j = active_[b], from = static_cast<Index>(b) * rows;
+    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    for (int l = 0; l < count; ++l)
+      for (int i = 0; i < count; ++i) {
+        Complex by_real, by_imaginary;
+        loop.derivative(series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
+        if (i == l) {
+          const double held = harmonics[static_cast<std::size_t>(i) + 1].held * stiffness_[j];
+          by_real -= held;
+          by_imaginary -= Complex(0.0, held);
+        }
+        columns_(i, shift + 2 * l) = by_real;
+        columns_(i, shift + 2 * l + 1) = by_imaginary;
+      }
+    if (series.has_mean) {
+      columns_.col(0).setZero();
+      by_mean[0] = loop.mean_derivative() - harmonics[0].held * stiffness_[j];
+      for (int l = 0; l < count; ++l) loop.mean_derivative(series.orders.at(l), by_mean[1 + 2 * l], by_mean[2 + 2 * l]);
+    }
+    for (std::size_t a = 0; a < active_.size(); ++a) {
+      const Index row = active_[a], base = static_cast<Index>(a) * rows;
+      for (Index c = 0; c < rows; ++c) {
+        double* const out = jacobian.data() + (from + c) * size + base;
+        if (series.has_mean) out[0] += harmonics[0].receptance(row, j).real() * by_mean[c];
+        for (int i = 0; i < count; ++i) {
+          const Complex change = product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), columns_(i, c));
+          out[shift + 2 * i] += change.real();
+          out[shift + 2 * i + 1] += change.imag();
+        }
+      }
+    }
+  }
+}
+
+void HarmonicBalanceEquations::factorise(const SliderSeries& series) {
+  fill_jacobian(series, factor_.matrix(rows_per_slider(series) * static_cast<Index>(active_.size())));
+  is_regular_ = factor_.factorise() > 1e-13;
+}
+
+// x <- J^-1 x
+void HarmonicBalanceEquations::solve_linear(const SliderSeries& series, Vector& x) {
+  if (is_regular_) {
+    factor_.solve(x);
+    return;
+  }
+  // A mean position that nothing determines: the least change.
+  Matrix jacobian(x.size(), x.size());
+  fill_jacobian(series, jacobian);
+  x = jacobian.completeOrthogonalDecomposition().solve(x).eval();
+}
+
+HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& series, double tolerance,
+                                                                  int most_iterations) {
+  const int count = series.orders.count;
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  Outcome outcome;
+  double size = evaluate(series);
+  trial_ = series;
+  for (;;) {
+    // Round-off of the linear part bounds what can be reached.
+    const double reachable = std::max(tolerance * displacement_, 8e-15 * linear_);
+    outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
+    outcome.has_converged = size <= reachable;
+    if (outcome.has_converged || outcome.iterations >= most_iterations || !std::isfinite(size)) break;
+    ++outcome.iterations;
+    factorise(series);
+    step_ = residual_;
+    solve_linear(series, step_);
+    if (!step_.allFinite()) break;
+    double part = 1.0, next = 0.0;
+    bool is_better = false;
+    for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
+      for (std::size_t a = 0; a < active_.size(); ++a) {
+        const Index j = active_[a], base = static_cast<Index>(a) * rows;
+        if (series.has_mean) trial_.mean[j] = series.mean[j] - part * step_[base];
+        for (int i = 0; i < count; ++i)
+          trial_.coefficients(i, j) =
+              series.coefficients(i, j) - part * Complex(step_[base + shift + 2 * i], step_[base + shift + 2 * i + 1]);
+      }
+      next = evaluate(trial_);
+      is_better = next < (1.0 - 0.1 * part) * size;
+      if (is_better) break;
+    }
+    if (!is_better) {
+      // At the floor of round-off nothing gets better; the loops belong to the series again.
+      size = evaluate(series);
+      outcome.has_converged = size <= 100.0 * reachable;
+      break;
+    }
+    std::swap(series.mean, trial_.mean);
+    std::swap(series.coefficients, trial_.coefficients);
+    size = next;
+  }
+  return outcome;
+}
+
+void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_t first, std::size_t end,
+                                          ComplexMatrix& left_out, ComplexMatrix& forces_left_out,
+                                          ComplexMatrix& force_change) {
+  const auto& harmonics = *harmonics_;
+  const auto m = static_cast<Index>(active_.size());
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  const int count = series.orders.count;
+  left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
+  forces_left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
+  force_change.setZero(count, stiffness_.size());
+  if (!any_slips()) return;
+  for (const Index j : active_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
+
+  // Each order alone, with its own part in the force: U + R (F + dF U) = 0.
+  Vector right(2 * m);
+  std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
+  for (std::size_t p = first; p < end; ++p) {
+    const CondensedHarmonic& harmonic = harmonics[p];
+    const int k = series.orders.at(static_cast<int>(p) - 1);
+    const auto place = static_cast<Index>(p - first);
+    Matrix& own = own_factor_.matrix(2 * m);
+    own.setIdentity();
+    right.setZero();
+    for (Index b = 0; b < m; ++b) {
+      const Index j = active_[static_cast<std::size_t>(b)];
+      const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+      const auto at = static_cast<std::size_t>(b);
+      const Complex force = loop.force(k);
+      loop.derivative(k, k, by_real[at], by_imaginary[at]);
+      const double held = harmonic.held * stiffness_[j];
+      forces_left_out(place, j) = force;
+      for (Index a = 0; a < m; ++a) {
+        const Complex r = harmonic.receptance(active_[static_cast<std::size_t>(a)], j);
+        const Complex x = product(r, by_real[at] - held), y = product(r, by_imaginary[at] - Complex(0.0, held)),
+                      f = product(r, force);
+        own(2 * a, 2 * b) += x.real();
+        own(2 * a + 1, 2 * b) += x.imag();
+        own(2 * a, 2 * b + 1) += y.real();
+        own(2 * a + 1, 2 * b + 1) += y.imag();
+        right[2 * a] -= f.real();
+        right[2 * a + 1] -= f.imag();
+      }
+    }
+    own_factor_.factorise();
+    own_factor_.solve(right);
+    for (Index b = 0; b < m; ++b) {
+      const Index j = active_[static_cast<std::size_t>(b)];
+      const auto at = static_cast<std::size_t>(b);
+      left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
+      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at] -
+                                   harmonic.held * stiffness_[j] * left_out(place, j);
+    }
+  }
+
+  // What that does to the orders kept.
+  if (factor_.size() != rows * m) factorise(series);
+  Vector mean_change = Vector::Zero(stiffness_.size());
+  for (const Index j : active_) {
+    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    for (std::size_t p = first; p < end; ++p) {
+      const int l = series.orders.at(static_cast<int>(p) - 1);
+      const Complex u = left_out(static_cast<Index>(p - first), j);
+      for (int i = 0; i < count; ++i) {
+        Complex real, imaginary;
+        loop.derivative(series.orders.at(i), l, real, imaginary);
+        force_change(i, j) += u.real() * real + u.imag() * imaginary;
+      }
+      if (series.has_mean) {
+        double real, imaginary;
+        loop.mean_derivative(l, real, imaginary);
+        mean_change[j] += u.real() * real + u.imag() * imaginary;
+      }
+    }
+  }
+  Vector change(rows * m);
+  for (Index a = 0; a < m; ++a) {
+    const Index row = active_[static_cast<std::size_t>(a)];
+    if (series.has_mean) {
+      change[a * rows] = 0.0;
+      for (const Index j : active_) change[a * rows] -= harmonics[0].receptance(row, j).real() * mean_change[j];
+    }
+    for (int i = 0; i < count; ++i) {
+      Complex sum = 0.0;
+      for (const Index j : active_)
+        sum -= product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), force_change(i, j));
+      change[a * rows + shift + 2 * i] = sum.real();
+      change[a * rows + shift + 2 * i + 1] = sum.imag();
+    }
+  }
+  solve_linear(series, change);
+  for (Index b = 0; b < m; ++b) {
+    const Index j = active_[static_cast<std::size_t>(b)];
+    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    for (int l = 0; l < count; ++l) {
+      const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
+      force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * stiffness_[j] * Complex(re, im);
+      for (int i = 0; i < count; ++i) {
+        Complex real, imaginary;
+        loop.derivative(series.orders.at(i), series.orders.at(l), real, imaginary);
+        force_change(i, j) += re * real + im * imaginary;
+      }
+    }
+  }
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <rubato/integrate/steady/condensed_structure.hpp>
+#include <rubato/integrate/steady/hysteresis_loop.hpp>
+#include <rubato/integrate/steady/small_lu.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// One harmonic of the condensed structure under its loads.
+struct CondensedHarmonic {
+  double angular_frequency = -1.0;  ///< k w; < 0: not yet condensed
+  double held = 0.0;                ///< part of the sliders' springs in Z
+  ComplexMatrix receptance;         ///< G, columns of sliders and loads
+  ComplexVector load;               ///< on the load columns [e]
+  ComplexVector linear;             ///< P^T Q under the loads alone [p]
+};
+
+/// The unknowns of harmonic balance: relative displacements of the sliders.
+struct SliderSeries {
+  Orders orders;
+  bool has_mean = false;
+  Vector mean;                 ///< [m]
+  ComplexMatrix coefficients;  ///< U, a column a slider [count x m]
+
+  void resize(const Orders& new_orders, bool with_mean, Index sliders);  ///< keeps what both have
+};
+
+/// U_k - U_k(linear) + R_k (F_k(U) - held kT U_k) = 0 for the sliders that have a limit, and Newton's method for it.
+class HarmonicBalanceEquations {
+ public:
+  explicit HarmonicBalanceEquations(const Vector& stiffness) : stiffness_(stiffness) {
+    loops_.resize(static_cast<std::size_t>(stiffness.size()));
+  }
+
+  /// @param harmonics  place 0: the mean (unused without it); place 1 + i: order i, at least as many as unknown orders
+  void set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits, const Vector& offsets);
+
+  struct Outcome {
+    bool has_converged = false;
+    double residual = 0.0;  ///< relative to the displacements
+    int iterations = 0;
+  };
+  /// Improves a series; what it holds after a failure is the best found.
+  Outcome solve(SliderSeries& series, double tolerance, int most_iterations);
+
+  /// The loops and forces at the solution found.
+  const std::vector<HysteresisLoop>& loops() const { return loops_; }
+  const std::vector<Index>& active() const { return active_; }
+  bool any_slips() const;
+
+  /// Estimates what orders left out (from `first` place of the harmonics on) would change: their own displacements
+  /// [orders left out x m] and the change of the forces of those kept [count x m].
+  void truncation(const SliderSeries& series, std::size_t first, std::size_t end, ComplexMatrix& left_out,
+                  ComplexMatrix& forces_left_out, ComplexMatrix& force_change);
+
+ private:
+  double evaluate(const SliderSeries& series);
+  void factorise(const SliderSeries& series);
+  void fill_jacobian(const SliderSeries& series, Matrix& jacobian);
+  void solve_linear(const SliderSeries& series, Vector& x);
+  Index rows_per_slider(const SliderSeries& series) const {
+    return (series.has_mean ? 1 : 0) + 2 * series.orders.count;
+  }
+
+  Vector stiffness_;
+  const std::vector<CondensedHarmonic>* harmonics_ = nullptr;
+  Vector limits_, offsets_;
+  std::vector<Index> active_;
+  std::vector<HysteresisLoop> loops_;
+  ComplexMatrix force_;  ///< F_k - held kT U_k [count x m]
+  Vector mean_force_;
+  Vector residual_, step_;
+  ComplexMatrix columns_;
+  SmallLu factor_, own_factor_;
+  bool is_regular_ = true;
+  SliderSeries trial_;
+  double displacement_ = 0.0, linear_ = 0.0;
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/system/state.hpp>
+
+namespace rubato::integrate {
+
+/// The state at phase zero of the linear response that is nearer to the response with friction: with all sliders stuck
+/// and without force at rest, where that asks of no slider more than twice its limit, else without sliders. Its slider
+/// forces are kT u, cut at the limits. Where the linear response is not finite (a resonance without damping, a free
+/// structure under a static load) the state at rest.
+system::State nearer_linear_limit(const system::LocallyNonlinear& system, const Excitation& excitation);
+
+}  // namespace rubato::integrate

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <rubato/integrate/exact/taylor_piece.hpp>
+#include <rubato/integrate/steady/steady_solver.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// A periodic solution of the exact flow: its pieces over a period, or over the half of it that the other half mirrors
+/// with the opposite sign. Everything that is said of it is found on the polynomials themselves, to round-off.
+class Orbit {
+ public:
+  explicit Orbit(const system::LocallyNonlinear& system) : system_(system) {}
+
+  void clear() { count_ = 0; }
+  void add(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states);
+  bool slips(Index slider) const;
+
+  /// Smallest and largest u = x_first - x_second of a slider over what is stored [m].
+  void displacement_range(Index slider, double& low, double& high) const;
+
+  /// Fills the measures of a response: amplitudes, mean, rms, harmonics, works, shares, offsets.
+  /// @param half  what is stored is half a period
+  void measure(const Excitation& excitation, const SteadyRequest& request, bool half, SteadyResponse& response) const;
+
+  Waveform waveform(const Excitation& excitation, bool half, int points) const;
+
+ private:
+  struct Piece {
+    double start = 0.0, length = 0.0;  // [s]
+    Index terms = 0;                   // of the polynomials that matter over the length
+    Matrix q, u;                       // coefficients [n x terms], [terms x m]
+    Vector offset, limit;              // of the slider forces [m] [N]
+    std::vector<SliderState> states;
+  };
+  void measure_ranges(const SteadyRequest& request, bool half, SteadyResponse& response) const;
+  void measure_integrals(const Excitation& excitation, const SteadyRequest& request, bool half,
+                         SteadyResponse& response) const;
+  void measure_sliders(double period, bool half, SteadyResponse& response) const;
+
+  const system::LocallyNonlinear& system_;
+  std::vector<Piece> pieces_;
+  std::size_t count_ = 0;  // of the pieces in use: their memory is kept
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/integrate/steady/steady_solver.hpp>
+
+namespace rubato::integrate {
+
+/// What a march writes down on its way over one or more periods: S + 1 samples at equal times, both ends included.
+struct PeriodRecord {
+  /// Makes room for `steps` steps. Accelerations and works may stay unwanted.
+  void reset(Index observed, Index sliders, Index steps, bool accelerations, bool works);
+
+  bool has_works = true;
+  Index steps = 0;                              ///< S
+  Matrix position, velocity, acceleration;      ///< of each observed [o x S+1] [m], [m/s], [m/s2]
+  Matrix slider_force, displacement;            ///< fc and u of each slider [m x S+1] [N], [m]
+  double viscous_work = 0.0, input_work = 0.0;  ///< sums of C v . dq and f . dq, means of both ends of each step [J]
+};
+
+/// Half peak to peak of each row of `value`, with its time derivative at the same samples: the extrema of the cubic
+/// Hermite polynomials between the samples (error h^4).
+Vector half_peak_to_peak(const Matrix& value, const Matrix& slope, double step);
+/// The same of samples alone: the parabola through the largest and its neighbours, of values that repeat after the
+/// last.
+Vector half_peak_to_peak_of_samples(const Matrix& value);
+/// Root mean square about zero of each row, by the trapezoidal rule over the record.
+Vector root_mean_square(const Matrix& value);
+
+/// Reads amplitudes, means, harmonics, works, slip shares, transitions and offsets out of a record of `periods` periods
+/// of the excitation. Integrals are trapezoidal sums (beyond all orders for a smooth periodic response, h^2 at the
+/// transitions); the work of a slider is the sum of (fc0 + fc1)/2 times its slip, u - fc/kT. What concerns one period
+/// (works, transitions) is an average over the periods. Status, residual, error, iterations stay untouched.
+void read_record(const PeriodRecord& record, const Excitation& excitation, const Vector& slider_stiffness, int periods,
+                 const SteadyRequest& request, SteadyResponse& response);
+
+}  // namespace rubato::integrate

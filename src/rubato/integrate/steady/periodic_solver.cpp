@@ -1,0 +1,358 @@
+#include <rubato/integrate/steady/equivalent_linear.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double round_off = 1e-13;      // of the amplitudes of an orbit whose residual is zero
+constexpr double offset_margin = 1e-10;  // by which a slider that never slips stays inside its limit
+constexpr double good_enough = 1e-10;    // residual that is accepted where round-off allows no smaller one
+constexpr double suspicious = 1e3;       // a step that much longer than the state: a resonance without damping?
+constexpr double fine_balance = 2e-11;   // of the works in a period
+constexpr int most_halvings = 3, most_moves = 60, rest_periods = 20, longest_stretch = 64;
+
+double imbalance(const SteadyResponse& response) {
+  return std::abs(response.input_work - response.viscous_work - response.dissipated.sum()) /
+         std::abs(response.input_work);
+}
+
+}  // namespace
+
+/// Keeps the pieces of a pass and carries the derivative along.
+class PeriodicSolver::Recorder final : public ExactVisitor {
+ public:
+  Recorder(Orbit& orbit, FlowDerivative& derivative) : orbit_(orbit), derivative_(derivative) {
+    orbit_.clear();
+    derivative_.set_identity();
+  }
+  bool sample(const system::State&, const ExactWork&) override { return true; }
+  bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
+  void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) override {
+    orbit_.add(piece, start, length, states);
+    derivative_.pass(length, states);
+  }
+
+ private:
+  Orbit& orbit_;
+  FlowDerivative& derivative_;
+};
+
+PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyRequest request, PeriodicOptions options)
+    : system_(system),
+      request_(std::move(request)),
+      options_(options),
+      n_(system.size()),
+      m_(system.slider_count()),
+      flow_(system),
+      derivative_(system),
+      orbit_(system),
+      start_(system.start()),
+      end_(system.start()) {
+  y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
+  wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
+}
+
+void PeriodicSolver::forget() {
+  known_.clear();
+  centre_.setZero();
+}
+
+Waveform PeriodicSolver::waveform(int points) const { return orbit_.waveform(last_, half_, points); }
+
+void PeriodicSolver::put(const Vector& y, const Excitation& excitation) {
+  y_ = y;
+  y_.tail(m_) = y_.tail(m_).cwiseMax(-excitation.limits).cwiseMin(excitation.limits);
+}
+
+double PeriodicSolver::size_of(const Excitation& excitation, const Vector& y) const {
+  const double omega = excitation.angular_frequency;
+  const Vector product = system_.mass() * y.head(n_), rate_product = system_.mass() * y.segment(n_, n_);
+  return std::sqrt(y.head(n_).dot(product) + y.segment(n_, n_).dot(rate_product) / (omega * omega));
+}
+
+// One pass of the flow from y_, over a period or half of it: orbit, derivative and P(y) - y.
+bool PeriodicSolver::pass(const Excitation& excitation) {
+  start_.t = 0.0;
+  start_.q = y_.head(n_);
+  start_.v = y_.segment(n_, n_);
+  start_.slider_force = y_.tail(m_);
+  end_ = start_;
+  Recorder recorder(orbit_, derivative_);
+  const ExactReport report = flow_.advance(end_, excitation.period() * (half_ ? 0.5 : 1.0), {}, recorder);
+  if (report.end != ExactEnd::reached) return false;
+  const double sign = half_ ? -1.0 : 1.0;
+  difference_.head(n_) = sign * end_.q - y_.head(n_);
+  difference_.segment(n_, n_) = sign * end_.v - y_.segment(n_, n_);
+  difference_.tail(m_) = sign * end_.slider_force - y_.tail(m_);
+  return difference_.allFinite();
+}
+
+double PeriodicSolver::residual(const Excitation& excitation) {
+  const double size = size_of(excitation, y_), moved = size_of(excitation, difference_);
+  double result = moved > 0.0 ? moved / size : 0.0;
+  for (Index i = 0; i < m_; ++i)
+    if (excitation.limits[i] > 0.0) result = std::max(result, std::abs(difference_[2 * n_ + i]) / excitation.limits[i]);
+  return result;
+}
+
+// Newton's step from y_ with the derivative of the pass just made. False at a resonance without damping.
+bool PeriodicSolver::correct() {
+  matrix_ = derivative_.matrix();
+  if (half_) matrix_ = -matrix_;
+  matrix_.diagonal().array() -= 1.0;
+  correction_ = -difference_;
+  if (!half_)
+    for (Index i = 0; i < m_; ++i) {
+      if (orbit_.slips(i)) continue;
+      // Its force repeats if the displacements do; what is left open is its offset.
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      const Index row = 2 * n_ + i;
+      matrix_.row(row).setZero();
+      matrix_(row, row) = 1.0;
+      if (slider.first != ground) matrix_(row, slider.first) -= slider.stiffness;
+      if (slider.second != ground) matrix_(row, slider.second) += slider.stiffness;
+      correction_[row] = offset_shift_[i];
+    }
+  factors_.compute(matrix_);
+  correction_ = factors_.solve(correction_).eval();
+  return correction_.allFinite();
+}
+
+// Sliders that never slip move towards the offset that is wanted, as far as they do not slip then.
+bool PeriodicSolver::must_move_offsets(const Excitation& excitation) {
+  bool moves = false;
+  offset_shift_.setZero();
+  if (half_) {
+    centre_.setZero();
+    return false;
+  }
+  for (Index i = 0; i < m_; ++i) {
+    const double limit = excitation.limits[i], stiffness = system_.sliders()[static_cast<std::size_t>(i)].stiffness;
+    double low = 0.0, high = 0.0;
+    orbit_.displacement_range(i, low, high);
+    centre_[i] = -0.5 * stiffness * (low + high);
+    if (limit == 0.0 || orbit_.slips(i)) continue;
+    const double offset = y_[2 * n_ + i] - stiffness * system_.relative_displacement(i, y_.head(n_));
+    const double inside = limit * (1.0 - offset_margin);
+    const double lowest = -inside - stiffness * low, highest = inside - stiffness * high;
+    centre_[i] = offset;
+    if (!(lowest < highest)) continue;
+    const double shift = std::clamp(wanted_offset_[i], lowest, highest) - offset;
+    if (!(std::abs(shift) > 10.0 * offset_margin * limit)) continue;
+    moves = true;
+    // The structure gives way under a change of the offset, so that more of it is allowed than at rest.
+    const bool at_edge = wanted_offset_[i] < lowest || wanted_offset_[i] > highest;
+    offset_shift_[i] = at_edge ? shift / force_by_offset(i) : shift;
+    if (std::abs(offset_shift_[i]) > std::abs(wanted_offset_[i] - offset))
+      offset_shift_[i] = wanted_offset_[i] - offset;
+  }
+  return moves;
+}
+
+// How much the force of a slider that never slips changes with its offset, between 0 and 1.
+double PeriodicSolver::force_by_offset(Index slider) {
+  offset_probe_.setZero(m_);
+  offset_probe_[slider] = 1.0;
+  std::swap(offset_probe_, offset_shift_);
+  difference_.swap(best_);
+  difference_.setZero();
+  const bool solved = correct();
+  difference_.swap(best_);
+  std::swap(offset_probe_, offset_shift_);
+  return solved ? std::clamp(correction_[2 * n_ + slider], 0.05, 1.0) : 1.0;
+}
+
+bool PeriodicSolver::march(const Excitation& excitation, int periods) {
+  for (int k = 0; k < periods * (half_ ? 2 : 1); ++k) {
+    if (!pass(excitation)) return false;
+    put(y_ + difference_, excitation);
+  }
+  return true;
+}
+
+void PeriodicSolver::march_from_rest(const Excitation& excitation) {
+  y_ << system_.start().q, system_.start().v, system_.start().slider_force;
+  put(Vector(y_), excitation);
+  half_ = false;
+  for (int periods = 0; periods < options_.most_periods; periods += rest_periods)
+    if (!march(excitation, rest_periods) || residual(excitation) < 1e-7) break;
+  for (Index i = 0; i < m_; ++i)
+    wanted_offset_[i] = y_[2 * n_ + i] - system_.sliders()[static_cast<std::size_t>(i)].stiffness *
+                                             system_.relative_displacement(i, y_.head(n_));
+}
+
+// Extrapolates the points before in the frequency, or guesses.
+void PeriodicSolver::predict(const Excitation& excitation) {
+  const double w = excitation.angular_frequency;
+  if (known_.empty()) {
+    if (!equivalent_linear_state(system_, excitation, start_.q, start_.v, start_.slider_force)) {
+      start_.q.setZero(n_);
+      start_.v.setZero(n_);
+      start_.slider_force.setZero(m_);
+    }
+    y_ << start_.q, start_.v, start_.slider_force;
+    return;
+  }
+  Vector y = known_[0].y;
+  if (known_.size() > 1) {
+    const double step = w - known_[0].angular_frequency;
+    const double last = known_[0].angular_frequency - known_[1].angular_frequency;
+    if (step * last > 0.0 && std::abs(step) <= 2.0 * std::abs(last)) {
+      const Vector slope = (known_[0].y - known_[1].y) / last;
+      y += step * slope;
+      if (known_.size() > 2) {
+        const double older = known_[1].angular_frequency - known_[2].angular_frequency;
+        if (older * last > 0.0 && std::abs(last) <= 2.0 * std::abs(older))
+          y += step * (step + last) / (last + older) * (slope - (known_[1].y - known_[2].y) / older);
+      }
+    }
+  }
+  put(y, excitation);
+  // A slider that slips at t = 0 goes on to slip there.
+  for (Index i = 2 * n_; i < y_.size(); ++i) {
+    const double limit = excitation.limits[i - 2 * n_];
+    if (std::abs(known_[0].y[i]) >= limit) y_[i] = std::copysign(limit, known_[0].y[i]);
+  }
+}
+
+void PeriodicSolver::remember(const Excitation& excitation) {
+  if (!known_.empty() && known_[0].angular_frequency == excitation.angular_frequency) known_.clear();
+  if (known_.size() < 3) known_.emplace_back();
+  std::rotate(known_.begin(), known_.end() - 1, known_.end());
+  known_[0].angular_frequency = excitation.angular_frequency;
+  known_[0].y = y_;
+}
+
+void PeriodicSolver::take_start(const Excitation& excitation, SteadyStart start) {
+  wanted_offset_.setZero();
+  if (start == SteadyStart::previous) wanted_offset_ = centre_;
+  if (start == SteadyStart::rest)
+    march_from_rest(excitation);
+  else
+    predict(excitation);
+  half_ = excitation.is_half_wave_symmetric() && (wanted_offset_.array() == 0.0).all();
+}
+
+void PeriodicSolver::report_unbounded(SteadyResponse& response) const {
+  const auto observed = static_cast<Index>(request_.observed.size());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  response.status = SteadyStatus::unbounded;
+  response.residual = response.error = infinity;
+  response.amplitude = response.rms = Vector::Constant(observed, infinity);
+  response.velocity_amplitude = response.acceleration_amplitude =
+      Vector::Constant(request_.rates ? observed : 0, infinity);
+  response.mean = Vector::Constant(observed, nan);
+  response.harmonics =
+      ComplexMatrix::Constant(observed, static_cast<Index>(request_.harmonics.size()), {infinity, nan});
+  response.dissipated = response.slip_share = response.offset = Vector::Constant(m_, nan);
+  response.viscous_work = response.input_work = nan;
+  response.transitions = 0;
+}
+
+double PeriodicSolver::observed_size(const Vector& y) const {
+  double size = 0.0;
+  for (const auto& what : request_.observed)
+    size = std::max(size, std::abs(y[what.first] - (what.second == ground ? 0.0 : y[what.second])));
+  return size;
+}
+
+void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) {
+  last_ = excitation;
+  response.periods = 1;
+  response.iterations = 0;
+  offset_shift_.setZero(m_);
+  flow_.set_excitation(excitation);
+  take_start(excitation, start);
+
+  response.status = SteadyStatus::not_converged;
+  const bool converged = iterate(excitation, response);
+  if (response.status == SteadyStatus::unbounded) {
+    report_unbounded(response);
+    known_.clear();
+    return;
+  }
+  response.status = converged ? SteadyStatus::converged : SteadyStatus::not_converged;
+  orbit_.measure(excitation, request_, half_, response);
+  // What the small rest of the residual does to the balance of a slightly damped structure.
+  for (int polish = 0; converged && polish < 2 && imbalance(response) > fine_balance && correct(); ++polish) {
+    ++response.iterations;
+    put(y_ + correction_, excitation);
+    if (!pass(excitation)) break;
+    response.residual = residual(excitation);
+    orbit_.measure(excitation, request_, half_, response);
+  }
+  const double largest = response.amplitude.size() > 0 ? response.amplitude.maxCoeff() : 0.0;
+  response.error = round_off;
+  if (correct() && largest > 0.0) {
+    Vector rates = Vector::Zero(y_.size());
+    rates.head(n_) = correction_.segment(n_, n_) / excitation.angular_frequency;
+    response.error += std::hypot(observed_size(correction_), observed_size(rates)) / largest;
+  }
+  if (converged)
+    remember(excitation);
+  else
+    known_.clear();
+}
+
+// Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
+// the flow itself is followed then.
+bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
+  double best = infinity;
+  int halvings = 0, periods = 0, stretch = 4;
+  bool may_move = true, moving = false;
+  Vector settled;  // an orbit whose offsets are being moved
+  while (response.iterations < options_.most_iterations) {
+    ++response.iterations;
+    double& last = response.residual;
+    last = pass(excitation) ? residual(excitation) : infinity;
+    if (last <= options_.tolerance) {
+      if (!may_move || response.iterations > most_moves || !must_move_offsets(excitation)) return true;
+      settled = y_;
+      moving = true;
+      best = infinity;
+    }
+    if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
+      best = last;
+      best_ = y_;
+      halvings = 0;
+      const bool solved = correct();
+      offset_shift_.setZero();
+      if (solved) {
+        put(best_ + correction_, excitation);
+        if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
+      }
+      std::vector<bool> sticks(static_cast<std::size_t>(m_));
+      for (Index i = 0; i < m_; ++i) sticks[static_cast<std::size_t>(i)] = !orbit_.slips(i);
+      if (is_at_undamped_resonance(system_, excitation, sticks)) {
+        response.status = SteadyStatus::unbounded;
+        return false;
+      }
+    } else if (best <= good_enough && best < infinity && !moving) {  // round-off: nothing better can be had
+      y_ = best_;
+      response.residual = pass(excitation) ? residual(excitation) : infinity;
+      return response.residual <= good_enough;
+    } else if (moving) {  // another slider slips then: the offset stays
+      moving = may_move = false;
+      y_ = settled;
+      best = infinity;
+    } else if (halvings < most_halvings && best < infinity) {
+      put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
+    } else {
+      if (best < infinity) y_ = best_;
+      if (periods >= options_.most_periods || !march(excitation, stretch)) return false;
+      periods += stretch;
+      stretch = std::min(2 * stretch, longest_stretch);
+      best = infinity;
+      halvings = 0;
+    }
+  }
+  return false;
+}
+
+}  // namespace rubato::integrate

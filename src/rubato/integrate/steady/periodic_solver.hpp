@@ -1,0 +1,86 @@
+#pragma once
+
+#include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/exact/flow_derivative.hpp>
+#include <rubato/integrate/steady/orbit.hpp>
+#include <rubato/integrate/steady/steady_solver.hpp>
+
+#include <Eigen/LU>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+struct PeriodicOptions {
+  double tolerance = 1e-12;   ///< of the residual: |y(T) - y(0)| over |y(0)|, see PeriodicSolver
+  int most_iterations = 200;  ///< of Newton
+  int most_periods = 4000;    ///< marched where Newton alone does not come nearer
+};
+
+/// The periodic orbit itself, by shooting: Newton's method on
+///
+///   P(y) - y = 0,   y = (q, v, fc) at t = 0,
+///
+/// with P the exact flow over a period and its exact derivative (ExactFlow, FlowDerivative); over half a period, with
+/// P(y) + y = 0, where loads and start are half-wave symmetric. Points continue from those before by extrapolation in
+/// the frequency; the first starts from one harmonic with equivalent stiffness and damping of the sliders. Where Newton
+/// does not come nearer, the flow itself is followed for some periods: with damping it always does.
+///
+/// A slider that never slips leaves its offset fc - kT u free: it is the one that SteadyStart asks for, or the nearest
+/// with which it does not slip.
+///
+/// The residual is the larger of |(dq, dv/omega)| over |(q, v/omega)| in the norm of the mass, and of |dfc| over the
+/// limit. The error is Newton's next correction.
+class PeriodicSolver final : public SteadySolver {
+ public:
+  /// Throws InvalidInput for more than 300 coordinates. The system must outlive the solver; its loads do not matter.
+  PeriodicSolver(const system::LocallyNonlinear& system, SteadyRequest request, PeriodicOptions options = {});
+
+  void solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
+  Waveform waveform(int points) const override;
+  void forget() override;
+
+  /// The state at t = 0 of the last orbit.
+  const system::State& state() const { return start_; }
+
+ private:
+  class Recorder;
+  struct Known {
+    double angular_frequency = 0.0;
+    Vector y;
+  };
+  void take_start(const Excitation& excitation, SteadyStart start);
+  void predict(const Excitation& excitation);
+  void march_from_rest(const Excitation& excitation);
+  bool march(const Excitation& excitation, int periods);
+  bool pass(const Excitation& excitation);
+  double residual(const Excitation& excitation);
+  bool correct();
+  bool iterate(const Excitation& excitation, SteadyResponse& response);
+  double force_by_offset(Index slider);
+  bool must_move_offsets(const Excitation& excitation);
+  double size_of(const Excitation& excitation, const Vector& y) const;
+  double observed_size(const Vector& y) const;
+  void put(const Vector& y, const Excitation& excitation);
+  void remember(const Excitation& excitation);
+  void report_unbounded(SteadyResponse& response) const;
+
+  const system::LocallyNonlinear& system_;
+  SteadyRequest request_;
+  PeriodicOptions options_;
+  Index n_, m_;
+  ExactFlow flow_;
+  FlowDerivative derivative_;
+  Orbit orbit_;
+  system::State start_, end_;                  // of a pass
+  Vector y_, difference_, correction_, best_;  // (q, v, fc) at the start; P(y) - y; Newton's step from best_
+  Vector wanted_offset_, offset_shift_, offset_probe_,
+      centre_;  // of sliders that never slip; last: of all, at the last point
+  Matrix matrix_;
+  Eigen::PartialPivLU<Matrix> factors_;
+  std::vector<Known> known_;  // the last three points, the newest first
+  bool half_ = false;
+  Excitation last_;
+};
+
+}  // namespace rubato::integrate

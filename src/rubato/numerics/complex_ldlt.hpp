@@ -1,0 +1,46 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+
+#include <Eigen/SparseCore>
+
+#include <complex>
+#include <vector>
+
+namespace rubato::numerics {
+
+using SparseComplexMatrix = Eigen::SparseMatrix<std::complex<double>>;  ///< by columns, int indices
+
+/// L D L^T of a sparse complex symmetric (not Hermitian) matrix, without pivoting: the dynamic stiffness
+/// K - omega^2 M + i omega C of a structure, whose pattern is analysed once for all frequencies.
+///
+/// Without pivoting a substructure in resonance may leave a pivot that is round-off; it is replaced by `tiny` of its
+/// scale, so that the factor always exists, and the caller checks the residual of what it solves.
+///
+/// Row by row, after Davis, "Algorithm 849: a concise sparse Cholesky factorization package", 2005; ordered by
+/// approximate minimum degree.
+class ComplexLdlt {
+ public:
+  /// Orders and analyses a symmetric pattern [n x n].
+  void analyse(const SparseMatrix& pattern);
+
+  /// Factorises a matrix of the analysed pattern (both triangles).
+  /// @param scale  size of the terms that each diagonal entry is the sum of [n]
+  /// @returns how many pivots were replaced
+  Index factorise(const SparseComplexMatrix& matrix, const Vector& scale);
+
+  Index size() const { return n_; }
+  Index factor_entries() const { return static_cast<Index>(row_.size()); }
+
+  /// x <- S^-1 x for each column [n x k].
+  void solve(Eigen::Ref<Eigen::MatrixXcd> x) const;
+
+ private:
+  Index n_ = 0;
+  std::vector<int> order_, position_, parent_;  // order_[place] = row
+  std::vector<int> start_, row_, filled_;       // L without its unit diagonal, by columns
+  std::vector<std::complex<double>> value_, pivot_, work_;
+  std::vector<int> mark_, path_;
+};
+
+}  // namespace rubato::numerics

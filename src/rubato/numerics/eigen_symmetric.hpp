@@ -1,0 +1,42 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+
+#include <optional>
+
+namespace rubato::numerics {
+
+/// The lowest solutions of K phi = omega^2 M phi, and how far they can be trusted.
+struct SymmetricModes {
+  Vector eigenvalues;  ///< omega^2, rising [k] [rad2/s2]; what is round-off of K is 0: a motion without stiffness
+  Matrix shapes;       ///< phi^T M phi = 1, phi_i^T M phi_j = 0 [n x k]; the largest entry of each is positive
+  /// Largest |K phi - omega^2 M phi|_i over |K| |phi| + |omega^2| |M| |phi| (largest entries) [-].
+  double residual = 0.0;
+  /// Eigenvalues that lie below the largest of these and were not found, counted by the inertia of K - s M; -1: the
+  /// count failed. Always 0 from the dense solver, which finds all.
+  Index missing = 0;
+  bool has_converged = true;  ///< else the numbers are the best found
+};
+
+/// The `count` lowest modes, 1 <= count <= n, of symmetric K and positive definite M [n x n].
+///
+/// Dense (Householder and QR on the Cholesky-reduced problem) for up to 400 coordinates, or where more than a third of
+/// the modes is asked for. Else shift-invert Lanczos with implicit restarts (Spectra; Sorensen 1992) around zero or,
+/// where K is singular or indefinite, around a shift below the spectrum of the size of the eigenvalues wanted. A single
+/// start vector may see a repeated mode once: the eigenvalues below the highest are counted by the inertia of
+/// K - s M (Sylvester's law; Parlett 1998, 3.3), and what is missing is sought beside what was found.
+///
+/// omega^2 is the Rayleigh quotient: its error is round-off of phi^T |K| phi.
+SymmetricModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count);
+
+/// Whether lowest_modes takes all modes from the dense solver.
+bool is_dense_eigenproblem(Index size, Index count);
+
+/// How many eigenvalues of K phi = omega^2 M phi lie below a value, by the inertia of K - value M; nothing where
+/// round-off could have turned the sign of a pivot (a value on an eigenvalue).
+std::optional<Index> modes_below(const SparseMatrix& stiffness, const SparseMatrix& mass, double value);
+
+/// The dense solver for all modes.
+SymmetricModes all_modes(const SparseMatrix& stiffness, const SparseMatrix& mass);
+
+}  // namespace rubato::numerics

@@ -1,0 +1,153 @@
+"""Sweeps as a user meets them: resume, threads, sizes, warnings. Usage: sweep_command_test.py RUBATO."""
+import csv
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+RUBATO = sys.argv[1]
+
+STUDY = """
+[parameters]
+N0 = 1.0
+k = 1.0
+Omega = 1.0
+[[coordinate]]
+name = "mass"
+mass = 1.0
+[[spring]]
+between = ["mass", "ground"]
+stiffness = "k"
+[[damper]]
+between = ["mass", "ground"]
+damping = 0.05
+[[slider]]
+name = "contact"
+between = ["mass", "ground"]
+stiffness = 1.0
+friction_coefficient = 0.5
+normal_load = "N0"
+[[force]]
+on = "mass"
+amplitude = 1.0
+angular_frequency = "Omega"
+[[analysis]]
+name = "frf"
+type = "frequency_response"
+angular_frequency = { from = 0.5, to = 2.0, points = POINTS }
+sweep = { k = { from = 1, to = 1.5, points = LINES }, N0 = [0.2, 0.5, 1, 2, 4] }
+"""
+
+
+class Sweep(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubato-sweep-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def write(self, points, lines, change=("", "")):
+        text = STUDY.replace("POINTS", str(points)).replace("LINES", str(lines)).replace(*change)
+        (self.folder / "study.toml").write_text(text)
+
+    def run_command(self, *arguments):
+        return subprocess.run([RUBATO, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder, timeout=300)
+
+    def rows(self, path):
+        with open(self.folder / path, newline="") as file:
+            return list(csv.reader(file))
+
+    def bytes_of(self, folder):
+        return {path.name: path.read_bytes() for path in (self.folder / folder).glob("*.csv")}
+
+    def test_writes_the_columns_of_the_contract(self):
+        self.write(11, 2)
+        result = self.run_command("run", "study.toml", "-o", "out")
+        self.assertEqual((result.returncode, result.stdout), (0, "out/report.html\n"), result.stderr)
+        rows = self.rows("out/frf.csv")
+        self.assertEqual(rows[0], ["k", "N0", "angular_frequency [rad/s]", "mass.amplitude [m]", "mass.velocity_amplitude [m/s]",
+                                   "mass.acceleration_amplitude [m/s2]", "mass.phase [rad]", "mass.mean [m]", "mass.rms [m]",
+                                   "contact.dissipated [J]", "contact.slip_share", "contact.offset [N]", "viscous_work [J]",
+                                   "input_work [J]", "transitions", "iterations", "residual", "error", "status"])
+        self.assertEqual(len(rows), 1 + 2 * 5 * 11)
+        self.assertEqual({row[-1] for row in rows[1:]}, {"converged"})
+        # What comes in goes out: the balance that every steady response keeps.
+        for row in rows[1:]:
+            friction, viscous, work = (float(row[i]) for i in (9, 12, 13))
+            self.assertAlmostEqual(work, viscous + friction, delta=1e-9 * work)
+        self.assertEqual(self.rows("out/frf.linear.csv")[0],
+                         ["k", "limit", "angular_frequency [rad/s]", "mass.amplitude [m]", "mass.phase [rad]"])
+        self.assertFalse((self.folder / "out/frf.resume").exists())
+
+    def test_results_do_not_depend_on_the_number_of_threads(self):
+        self.write(40, 5)
+        for jobs in ("1", "2", "7"):
+            self.assertEqual(self.run_command("run", "study.toml", "-o", jobs, "--jobs", jobs, "-q").returncode, 0)
+        self.assertEqual(self.bytes_of("1"), self.bytes_of("2"))
+        self.assertEqual(self.bytes_of("1"), self.bytes_of("7"))
+
+    def test_an_interrupted_sweep_resumes_with_the_same_bits(self):
+        self.write(200, 60)
+        self.assertEqual(self.run_command("run", "study.toml", "-o", "whole", "-q").returncode, 0)
+        for sent, status in ((signal.SIGINT, 130), (signal.SIGKILL, -9)):
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
+            process = subprocess.Popen([RUBATO, "run", "study.toml", "-o", "out", "-q", "--jobs", "1"], cwd=self.folder,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            self.addCleanup(process.kill)
+            journal, end = self.folder / "out/frf.resume", time.monotonic() + 60
+            while not (journal.exists() and journal.stat().st_size > 100):
+                self.assertLess(time.monotonic(), end)
+                self.assertIsNone(process.poll(), "it was done before it could be interrupted")
+                time.sleep(0.002)
+            process.send_signal(sent)
+            _, err = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, status, err)
+            if sent == signal.SIGINT:
+                self.assertRegex(err, r'analysis "frf" stopped: interrupted after \d+ of 60000 points')
+            self.assertTrue(journal.exists())
+            result = self.run_command("run", "study.toml", "-o", "out", "--resume", "-q")
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertEqual(self.bytes_of("out"), self.bytes_of("whole"))
+            self.assertFalse(journal.exists())
+
+    def test_refuses_to_resume_another_study(self):
+        self.write(200, 2)
+        (self.folder / "out").mkdir()
+        (self.folder / "out/frf.resume").write_text("rubato journal 1 0123456789abcdef\n")
+        result = self.run_command("run", "study.toml", "-o", "out", "--resume")
+        self.assertEqual((result.returncode, result.stderr),
+                         (2, "error: --resume: out/frf.resume was left by another study, other values of --set or another "
+                             "version; run without --resume to begin afresh\n"))
+        self.assertFalse((self.folder / "out/results.nc").exists())
+
+    def test_more_than_a_million_points_want_a_yes(self):
+        self.write(1001, 200)
+        result = self.run_command("run", "study.toml", "-o", "out")
+        self.assertEqual((result.returncode, result.stderr),
+                         (2, 'study.toml:25:1: error: analysis "frf": the sweep has 1.001e+06 points, more than a million; '
+                             "say --yes if that is meant\n"))
+        self.assertEqual(self.run_command("check", "study.toml").returncode, 0)
+
+    def test_a_sweep_that_memory_cannot_hold_is_refused(self):
+        self.write(100000, 2, ("sweep = { k = { from = 1, to = 1.5, points = 2 }, N0 = [0.2, 0.5, 1, 2, 4] }",
+                               'sweep = { samples = 10000000, parameters = { k = { distribution = "uniform", from = 1, '
+                               "to = 2 } } }"))
+        result = self.run_command("run", "study.toml", "-o", "out", "--yes")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, r'^study.toml:25:1: error: analysis "frf": a sweep of 1e\+12 points keeps 8e\+03 GB, and '
+                                        r"this machine has \S+ GB; observe fewer coordinates, or take fewer points\n$")
+
+    def test_negative_preloads_are_told(self):
+        self.write(5, 2, ("N0 = [0.2, 0.5, 1, 2, 4]", "N0 = [-1, 1]"))
+        result = self.run_command("run", "study.toml", "-o", "out", "-q")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn('study.toml: warning: analysis "frf": at k = 1, N0 = -1, angular_frequency = 0.5 rad/s the normal load of '
+                      'slider "contact" is -1 N: it cannot be pulled, and counts as 0 (10 points with negative loads)\n',
+                      result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)

@@ -1,0 +1,262 @@
+#include "support/models.hpp"
+
+#include <rubato/integrate/steady/periodic_solver.hpp>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+namespace rubato::integrate {
+namespace {
+
+using testing::chain;
+using testing::damper_model;
+using testing::single_mass;
+
+SteadyResponse solve(const system::LocallyNonlinear& system, SteadyRequest request,
+                     SteadyStart start = SteadyStart::unloaded) {
+  PeriodicSolver solver(system, std::move(request));
+  SteadyResponse response;
+  solver.solve(excitation_of(system), start, response);
+  return response;
+}
+
+double imbalance(const SteadyResponse& r) {
+  return std::abs(r.input_work - r.viscous_work - r.dissipated.sum()) / std::abs(r.input_work);
+}
+
+// The steady state of the thesis's table 3.1, event-driven in 40 digits (reference page, section 3).
+TEST(PeriodicSolver, FindsTheSteadyStateOfOneMassWithASlider) {
+  const SteadyResponse r = solve(single_mass(0.15), {{{0}}, {1, 2, 3}});
+  EXPECT_EQ(r.status, SteadyStatus::converged);
+  EXPECT_LT(r.residual, 1e-10);
+  EXPECT_NEAR(r.amplitude[0], 0.2942542080903754, 1e-14);
+  EXPECT_NEAR(r.dissipated[0], 0.0865525248542252, 1e-14);
+  EXPECT_NEAR(r.viscous_work, 0.543603660209531, 1e-13);
+  EXPECT_NEAR(r.input_work, 0.630156185063756, 1e-13);
+  EXPECT_EQ(r.transitions, 4);
+  // The loop of a slider between +-A: 4 mu N (A - mu N / kT).
+  EXPECT_NEAR(r.dissipated[0], 4 * 0.15 * (r.amplitude[0] - 0.15), 1e-14);
+  EXPECT_NEAR(std::abs(r.harmonics(0, 1)), 0.0, 1e-15);  // half-wave symmetric: no even harmonics
+  EXPECT_GT(std::abs(r.harmonics(0, 2)), 1e-4);
+}
+
+TEST(PeriodicSolver, FindsTheSteadyAmplitudesOfTheDamperModel) {
+  const SteadyResponse r = solve(damper_model(), {{{0}, {1}, {1, 4}}, {1}});
+  EXPECT_NEAR(r.amplitude[0], 0.0313777807495, 1e-13);
+  EXPECT_NEAR(r.amplitude[1], 0.53295660136, 1e-11);
+  EXPECT_NEAR(r.amplitude[2], r.amplitude[1], 1e-12);  // the damper rests under opposite forces
+  EXPECT_LT(imbalance(r), 1e-10);
+}
+
+// Peaks of the response over frequency (reference page, section 3), at the frequencies of the peaks.
+TEST(PeriodicSolver, GivesThePeaksOfOneMass) {
+  const struct {
+    double load, amplitude, omega;
+  } peaks[] = {{0.1, 1.08867757048, 0.687575081},
+               {0.3, 0.953146352429, 0.657293279},
+               {0.8, 0.694210394916, 0.968311264},
+               {1.2, 0.696387871444, 1.16513079},
+               {1.6, 0.755928946018, 1.22474487}};
+  for (const auto& peak : peaks)
+    EXPECT_NEAR(solve(single_mass(0.5 * peak.load, peak.omega), {{{0}}}).amplitude[0], peak.amplitude, 1e-11)
+        << peak.load;
+}
+
+// Without friction the response has a closed form.
+TEST(PeriodicSolver, IsTheLinearResponseWithoutFriction) {
+  for (const double omega : {0.3, 0.99, 1.0, 2.7}) {
+    const SteadyResponse r = solve(single_mass(0.0, omega, 0.05), {{{0}}, {1}});
+    const std::complex<double> exact = 1.0 / std::complex<double>(1.0 - omega * omega, 0.05 * omega);
+    EXPECT_NEAR(r.amplitude[0], std::abs(exact), 1e-12 * std::abs(exact));
+    EXPECT_NEAR(std::abs(r.harmonics(0, 0) - exact), 0.0, 1e-11 * std::abs(exact));
+    EXPECT_NEAR(r.velocity_amplitude[0], omega * std::abs(exact), 1e-11 * std::abs(exact));
+    EXPECT_NEAR(r.acceleration_amplitude[0], omega * omega * std::abs(exact), 1e-11 * std::abs(exact));
+    EXPECT_NEAR(r.rms[0], std::abs(exact) / std::sqrt(2.0), 1e-12 * std::abs(exact));
+    EXPECT_NEAR(r.viscous_work, std::numbers::pi * 0.05 * omega * std::norm(exact), 1e-11);
+  }
+}
+
+TEST(PeriodicSolver, SaysThatAResonanceWithoutDampingIsUnbounded) {
+  const SteadyResponse r = solve(single_mass(0.0, 1.0, 0.0), {{{0}}, {1}});
+  EXPECT_EQ(r.status, SteadyStatus::unbounded);
+  EXPECT_TRUE(std::isinf(r.amplitude[0]));
+}
+
+// A static load breaks the half-wave symmetry: the mean moves, and even harmonics appear.
+TEST(PeriodicSolver, CarriesAStaticLoad) {
+  const auto model = [](double load) {
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+    parts.damping = testing::sparse(0.1 * Matrix::Identity(1, 1));
+    parts.sliders = {{"contact", 0, ground, 1.0, 0.3}};
+    parts.loads = system::Loads({testing::harmonic(0, 1.0, 0.8), testing::harmonic(0, load, 0.0)});
+    parts.coordinates = {"mass"};
+    return system::LocallyNonlinear(std::move(parts));
+  };
+  const SteadyResponse without = solve(model(0.0), {{{0}}, {1, 2}}), with = solve(model(0.4), {{{0}}, {1, 2}});
+  EXPECT_NEAR(without.mean[0], 0.0, 1e-14);
+  // The slider slips both ways, so that it carries no static load in the end: the spring does, and the rest is the
+  // same.
+  EXPECT_NEAR(with.mean[0], 0.4, 1e-12);
+  EXPECT_NEAR(with.amplitude[0], without.amplitude[0], 1e-11);
+  EXPECT_LT(imbalance(with), 1e-10);
+}
+
+// A slider that never slips keeps the offset it is given, within its limit.
+TEST(PeriodicSolver, KeepsTheOffsetOfASliderThatNeverSlips) {
+  const auto model = [](double omega) {
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+    parts.damping = testing::sparse(0.1 * Matrix::Identity(1, 1));
+    parts.sliders = {{"contact", 0, ground, 1.0, 1.0}};
+    parts.loads = system::Loads({testing::harmonic(0, 0.3, omega)});
+    parts.start.q = Vector::Constant(1, 3.0);
+    parts.start.v = Vector::Zero(1);
+    parts.start.slider_force = Vector::Zero(1);
+    parts.coordinates = {"mass"};
+    return system::LocallyNonlinear(std::move(parts));
+  };
+  const auto system = model(3.0);
+  const SteadyResponse unloaded = solve(system, {{{0}}}), rest = solve(system, {{{0}}}, SteadyStart::rest);
+  EXPECT_EQ(unloaded.offset[0], 0.0);
+  EXPECT_EQ(unloaded.mean[0], 0.0);
+  // Released from 3 m the slider slips and comes to rest with a force: 2 x + offset = 0 in the mean.
+  EXPECT_GT(std::abs(rest.offset[0]), 0.01);
+  EXPECT_NEAR(rest.mean[0], -0.5 * rest.offset[0], 1e-10);
+  EXPECT_NEAR(rest.amplitude[0], unloaded.amplitude[0], 1e-11);
+
+  // From a point before, which came from rest, the offset is carried over.
+  PeriodicSolver solver(system, {{{0}}});
+  SteadyResponse first, second;
+  Excitation excitation = excitation_of(system);
+  solver.solve(excitation, SteadyStart::rest, first);
+  excitation.angular_frequency = 3.2;
+  solver.solve(excitation, SteadyStart::previous, second);
+  EXPECT_NEAR(second.offset[0], first.offset[0], 1e-12);
+  solver.solve(excitation, SteadyStart::unloaded, second);
+  EXPECT_EQ(second.offset[0], 0.0);
+}
+
+// Amplitude and phase of a wave, from its samples: they lie on the orbit.
+TEST(PeriodicSolver, SamplesTheWaveform) {
+  const auto system = damper_model(25.0, 7.4, -8.0);
+  PeriodicSolver solver(system, {{{3}}, {1}});
+  SteadyResponse r;
+  solver.solve(excitation_of(system), SteadyStart::unloaded, r);
+  const Waveform wave = solver.waveform(256);
+  EXPECT_NEAR(wave.position.row(3).maxCoeff(), r.amplitude[0], 1e-3 * r.amplitude[0]);
+  EXPECT_LE(wave.position.row(3).maxCoeff(), r.amplitude[0] * (1.0 + 1e-12));
+  // The area of the loop of the samples, against the friction work; the trapezoidal rule on 256 points.
+  for (Index i = 0; i < 2; ++i) {
+    double area = 0.0;
+    for (Index j = 0; j < 256; ++j) {
+      const Index next = (j + 1) % 256;
+      area += 0.5 * (wave.slider_force(i, j) + wave.slider_force(i, next)) *
+              (wave.displacement(i, next) - wave.displacement(i, j));
+    }
+    EXPECT_NEAR(area, r.dissipated[i], 2e-3 * r.dissipated[i] + 1e-6);
+  }
+}
+
+// Continued along a sweep and started afresh, the answers are the same to the tolerance.
+TEST(PeriodicSolver, AnswersAlikeWhereverItComesFrom) {
+  const auto system = damper_model(35.0, 7.0, -8.0);
+  PeriodicSolver swept(system, {{{1}, {3}}, {1}}), fresh(system, {{{1}, {3}}, {1}});
+  Excitation excitation = excitation_of(system);
+  SteadyResponse a, b;
+  for (int i = 0; i <= 60; ++i) {
+    excitation.angular_frequency = 6.0 + 0.05 * i;
+    swept.solve(excitation, SteadyStart::unloaded, a);
+    fresh.forget();
+    fresh.solve(excitation, SteadyStart::unloaded, b);
+    ASSERT_EQ(a.status, SteadyStatus::converged);
+    ASSERT_EQ(b.status, SteadyStatus::converged);
+    // Both residuals are below 1e-12; the response amplifies them by at most 1/(pi zeta) = 16.
+    EXPECT_NEAR(a.amplitude[1], b.amplitude[1], 1e-10 * a.amplitude[1]);
+    EXPECT_LT(imbalance(a), 1e-10);
+  }
+}
+
+/// Random structures of up to 12 coordinates and sliders that share them; loads of any phase, with static ones and
+/// second and third harmonics; limits over three decades, some of them zero.
+system::LocallyNonlinear random_model(unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const auto u = [&] { return uniform(generator); };
+  const auto n = 2 + static_cast<Index>(u() * 11), m = 1 + static_cast<Index>(u() * 12);
+  const auto any = [&] { return static_cast<Index>(u() * static_cast<double>(n)); };
+  system::LocallyNonlinear::Parts parts;
+  Vector mass(n);
+  for (double& x : mass) x = 0.5 + 2.0 * u();
+  Matrix k = Matrix::Zero(n, n);
+  for (Index i = 0; i < n; ++i) {
+    k(i, i) += i == 0 || u() < 0.5 ? 0.5 + u() : 0.0;
+    if (i == 0) continue;
+    const double joint = 0.5 + 3.0 * u();
+    k(i, i) += joint;
+    k(i - 1, i - 1) += joint;
+    k(i, i - 1) = k(i - 1, i) = -joint;
+  }
+  Matrix c = 0.03 * (0.2 + u()) * k;
+  c.diagonal() += 0.02 * u() * mass;
+  parts.mass = testing::sparse(mass.asDiagonal().toDenseMatrix());
+  parts.stiffness = testing::sparse(k);
+  parts.damping = testing::sparse(c);
+  for (Index i = 0; i < m; ++i) {
+    const Index first = any(), second = u() < 0.3 ? ground : any();
+    const double limit = u() < 0.05 ? 0.0 : std::pow(10.0, -2.0 + 3.0 * u());
+    parts.sliders.push_back({"s", first, first == second ? ground : second, 0.3 + 3.0 * u(), limit});
+  }
+  const double omega = 0.2 + 2.2 * u();
+  std::vector<system::LoadTerm> loads{testing::harmonic(any(), 1.0, omega, 6.0 * u())};
+  for (const double order : {0.0, 1.0, 2.0, 3.0})
+    if (u() < 0.3) loads.push_back(testing::harmonic(any(), 2.0 * u() - 1.0, order * omega, 6.0 * u()));
+  parts.loads = system::Loads(std::move(loads));
+  parts.coordinates.assign(static_cast<std::size_t>(n), "x");
+  return system::LocallyNonlinear(std::move(parts));
+}
+
+class NoVisitor final : public ExactVisitor {
+  bool sample(const system::State&, const ExactWork&) override { return true; }
+  bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
+};
+
+// The exact flow, followed for three periods, comes back to the state that was found.
+TEST(PeriodicSolver, FindsOrbitsOfRandomStructures) {
+  NoVisitor nothing;
+  for (unsigned seed = 0; seed < 150; ++seed) {
+    const auto system = random_model(seed);
+    PeriodicSolver solver(system, {{{0}}, {1}});
+    const Excitation excitation = excitation_of(system);
+    SteadyResponse r;
+    solver.solve(excitation, SteadyStart::unloaded, r);
+    ASSERT_EQ(r.status, SteadyStatus::converged) << seed;
+    EXPECT_LT(r.residual, 1e-10) << seed;
+    EXPECT_LT(imbalance(r), 1e-10) << seed;
+    system::State state = solver.state();
+    ExactFlow flow(system);
+    ASSERT_EQ(flow.advance(state, 3.0 * excitation.period(), {}, nothing).end, ExactEnd::reached);
+    EXPECT_LT((state.q - solver.state().q).norm(), 1e-10 * (1.0 + state.q.norm())) << seed;
+  }
+}
+
+TEST(Excitation, KnowsTheCommonPeriod) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = parts.damping = testing::sparse(Matrix::Identity(1, 1));
+  parts.loads = system::Loads({testing::harmonic(0, 1.0, 3.0), testing::harmonic(0, 2.0, 4.5, 0.3)});
+  parts.coordinates = {"x"};
+  const Excitation excitation = excitation_of(system::LocallyNonlinear(parts));
+  EXPECT_NEAR(excitation.angular_frequency, 1.5, 1e-15);
+  ASSERT_EQ(excitation.harmonics.size(), 2u);
+  EXPECT_EQ(excitation.harmonics[0].order, 2);
+  EXPECT_EQ(excitation.harmonics[1].order, 3);
+  EXPECT_NEAR(std::arg(excitation.harmonics[1].amplitude[0]), 0.3, 1e-15);
+  EXPECT_FALSE(excitation.is_half_wave_symmetric());
+  parts.loads = system::Loads({testing::harmonic(0, 1.0, 3.0), testing::harmonic(0, 2.0, std::sqrt(2.0))});
+  EXPECT_THROW(excitation_of(system::LocallyNonlinear(parts)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace rubato::integrate
