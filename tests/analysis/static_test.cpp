@@ -138,6 +138,66 @@ system::LocallyNonlinear between_sliders(double force) {
   return system::LocallyNonlinear(std::move(parts));
 }
 
+/// A cantilever of 2 m along (0.6, 0.8), clamped at "foot".
+model::ModelDescription cantilever(int elements, bool lumped_mass) {
+  model::ModelDescription description;
+  auto& structure = description.structure;
+  structure.nodes = {{"foot", {0.0, 0.0}, {}}, {"tip", {1.2, 1.6}, {}}};
+  structure.materials = {{"steel", 2.1e11, 0.3, {}, 7850.0, {}}};
+  structure.sections = {{"bar", 2e-2, {6e-5}, {}, {0.5}, {}}};
+  model::BeamDescription beam;
+  beam.name = "arm";
+  beam.nodes = {"foot", "tip"};
+  beam.section = "bar";
+  beam.material = "steel";
+  beam.elements = elements;
+  beam.lumped_mass = lumped_mass;
+  structure.beams = {beam};
+  model::SupportDescription foot;
+  foot.node = "foot";
+  foot.fix = {"x", "y", "rz"};
+  structure.supports = {foot};
+  return description;
+}
+
+// Timoshenko (1921): under p across it, the tip moves by p L^4/(8 E I) + p L^2/(2 kappa A G) and turns by p L^3/(6 E
+// I); under p along it, by p L^2/(2 E A). The condition number of 4 elements is some 1e5.
+TEST(StaticEquilibrium, BendsACantileverUnderAnEvenLoad) {
+  const double ei = 2.1e11 * 6e-5, ea = 2.1e11 * 2e-2, kag = 0.5 * 2e-2 * 2.1e11 / 2.6, length = 2.0, p = 3e4;
+  for (const int elements : {1, 4})
+    for (const bool lumped : {false, true}) {
+      model::ModelDescription description = cantilever(elements, lumped);
+      model::DistributedForceDescription across{"arm", {-0.8, 0.6}, model::HarmonicDescription{p, 0.0, 0.0}, {}};
+      description.distributed_forces = {across};
+      const auto bent = assembled(description);
+      const Vector q = find_equilibrium(bent, {}).state.q;
+      const double deflection = p * std::pow(length, 4) / (8.0 * ei) + p * length * length / (2.0 * kag);
+      EXPECT_NEAR(q[place_of(bent, "tip.x")], -0.8 * deflection, 1e-10 * deflection);
+      EXPECT_NEAR(q[place_of(bent, "tip.y")], 0.6 * deflection, 1e-10 * deflection);
+      EXPECT_NEAR(q[place_of(bent, "tip.rz")], p * std::pow(length, 3) / (6.0 * ei), 1e-10 * deflection);
+
+      description.distributed_forces[0].direction = {0.6, 0.8};
+      const auto stretched = assembled(description);
+      const Vector along = find_equilibrium(stretched, {}).state.q;
+      const double extension = p * length * length / (2.0 * ea);
+      EXPECT_NEAR(along[place_of(stretched, "tip.x")], 0.6 * extension, 1e-9 * extension);
+    }
+}
+
+// Weight is an even load of rho A g.
+TEST(StaticEquilibrium, BendsACantileverUnderItsWeight) {
+  model::ModelDescription description = cantilever(3, false);
+  description.gravity = model::GravityDescription{{0.0, -9.81}, {}};
+  const auto heavy = assembled(description);
+  description.gravity.reset();
+  model::DistributedForceDescription weight{
+      "arm", {0.0, -1.0}, model::HarmonicDescription{7850.0 * 2e-2 * 9.81, 0.0, 0.0}, {}};
+  description.distributed_forces = {weight};
+  const auto loaded = assembled(description);
+  const Vector by_gravity = find_equilibrium(heavy, {}).state.q, by_load = find_equilibrium(loaded, {}).state.q;
+  EXPECT_LT((by_gravity - by_load).norm(), 1e-12 * by_load.norm());
+}
+
 TEST(StaticEquilibrium, SharesTheLoadAmongSlidersThatStickAndSlip) {
   const StaticEquilibrium stuck = find_equilibrium(between_sliders(1.6), {});
   ASSERT_EQ(stuck.outcome, StaticOutcome::found);

@@ -155,6 +155,30 @@ TEST(StructureFileError, NamesMissingAndMisspeltKeys) {
             "lumped)");
 }
 
+TEST(DistributedForceFile, IsReadAndPointsAtItsFaults) {
+  const std::string load =
+      "[[distributed_force]]\n"     // 43
+      "on = \"column\"\n"           // 44
+      "direction = [1.0, 0.0]\n"    // 45
+      "expression = \"1e3 * t\"\n"  // 46
+      "[gravity]\n";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return verdict(edited(from, to, edited("[gravity]\n", load, portal_text)));
+  };
+  EXPECT_EQ(with("1e3 * t", "2e3 * t"), "accepted");
+  EXPECT_EQ(
+      with("on = \"column\"", "on = \"colum\""),
+      "study.toml:44:6: error: a distributed force is on \"colum\", which is the name of no beam or truss; did you "
+      "mean \"column\"? (known: column)");
+  EXPECT_EQ(
+      with("direction = [1.0, 0.0]", "direction = [1.0]"),
+      "study.toml:44:6: error: the distributed force on \"column\": direction takes 2 numbers, as the positions of "
+      "nodes do, got 1");
+  EXPECT_EQ(with("1e3 * t", "1e3 / t"),
+            "study.toml:46:14: error: the distributed force on \"column\": \"1e3 / t\" is inf at t = 0; give a formula "
+            "that is finite at all times");
+}
+
 // Weight of what hangs on the foot: column 1e-3 m2 x 3 m, beam 2 m, truss sqrt(13) m of steel, and the mass of 10 kg;
 // of what a support holds, the foot's share, nothing arrives.
 TEST(Gravity, PullsElementsAndMasses) {

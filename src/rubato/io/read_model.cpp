@@ -189,8 +189,17 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     reader.finish();
     model.forces.push_back(std::move(force));
   }
+  for (TomlReader& reader : root.tables("distributed_force")) {
+    DistributedForceDescription force;
+    force.on = reader.name("on", &force.where);
+    reader.rename(fmt::format("the distributed force on \"{}\"", force.on));
+    force.direction = reader.optional_quantities("direction").value_or(std::vector<Quantity>{});
+    force.law = read_law(reader, folder);
+    reader.finish();
+    model.distributed_forces.push_back(std::move(force));
+  }
   model.base_motion = read_base_motion(root, folder);
-  read_structure(root, model);
+  read_structure(root, folder, model);
   return model;
 }
 

@@ -110,7 +110,7 @@ SupportDescription read_support(TomlReader& reader) {
 
 }  // namespace
 
-void read_structure(TomlReader& root, ModelDescription& model) {
+void read_structure(TomlReader& root, const std::filesystem::path& folder, ModelDescription& model) {
   StructureDescription& structure = model.structure;
   for (TomlReader& reader : root.tables("node")) structure.nodes.push_back(read_node(reader));
   for (TomlReader& reader : root.tables("material")) structure.materials.push_back(read_material(reader));
@@ -121,6 +121,7 @@ void read_structure(TomlReader& root, ModelDescription& model) {
     read_line(reader, "truss", structure.trusses.back());
     reader.finish();
   }
+  read_mesh(root, folder, structure);
   for (TomlReader& reader : root.tables("mass")) structure.masses.push_back(read_mass(reader));
   for (TomlReader& reader : root.tables("support")) structure.supports.push_back(read_support(reader));
   for (TomlReader& reader : root.tables("displacement")) {

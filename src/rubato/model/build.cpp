@@ -35,6 +35,7 @@ class Builder {
     for (const HeldDescription& held : description_.held_forces)
       model_.held_forces.push_back({find(held.on, held.where, "a force is on"),
                                     number(held.value, fmt::format("the force on \"{}\": held", held.on))});
+    for (const DistributedForceDescription& force : description_.distributed_forces) take_distributed_force(force);
     take_displacements();
     if (description_.gravity) take_gravity(*description_.gravity);
     if (description_.base_motion) take_base_motion(*description_.base_motion);
@@ -116,6 +117,7 @@ class Builder {
     }
     model_.structure = std::move(built.structure);
     fixed_ = std::move(built.fixed);
+    lines_ = std::move(built.lines);
   }
 
   SparseMatrix to_sparse(const MatrixDescription& matrix, int size) const {
@@ -329,6 +331,28 @@ class Builder {
     }
   }
 
+  void take_distributed_force(const DistributedForceDescription& description) {
+    const std::string part = fmt::format("the distributed force on \"{}\"", description.on);
+    const auto found =
+        std::find_if(lines_.begin(), lines_.end(), [&](const NamedLine& line) { return line.name == description.on; });
+    if (found == lines_.end()) {
+      std::vector<std::string> names;
+      for (const NamedLine& line : lines_) names.push_back(line.name);
+      throw InvalidInput(description.where,
+                         fmt::format("a distributed force is on \"{}\", which is the name of no beam or truss{}",
+                                     description.on, suggestion(description.on, names)));
+    }
+    const auto wanted = static_cast<std::size_t>(model_.structure.dimension);
+    if (description.direction.size() != wanted)
+      throw InvalidInput(description.where, fmt::format("{}: direction takes {} numbers, as the positions of nodes do, "
+                                                        "got {}",
+                                                        part, wanted, description.direction.size()));
+    DistributedForce force{found->first, found->count, Axis::Zero(), law(description.law, part)};
+    for (std::size_t i = 0; i < wanted; ++i)
+      force.direction[static_cast<Index>(i)] = number(description.direction[i], part + ": direction");
+    model_.distributed_forces.push_back(std::move(force));
+  }
+
   void take_displacements() {
     for (const HeldDescription& held : description_.displacements) {
       const Index place = find(held.on, held.where, "a displacement is of");
@@ -433,6 +457,7 @@ class Builder {
   Index first_of_nodes_ = 0;
   std::unordered_map<std::string, Index> places_;
   std::unordered_set<std::string> fixed_;
+  std::vector<NamedLine> lines_;
 };
 
 }  // namespace

@@ -181,8 +181,10 @@ class StructureBuilder {
                              : fmt::format("{} \"{}\"", kind, line.name);
   }
 
-  void add_name(const LineDescription& line) {
-    if (!line.name.empty()) lines_.add(line.name, line.where, built_.structure.elements.size());
+  void add_name(const LineDescription& line, std::size_t count) {
+    if (line.name.empty()) return;
+    lines_.add(line.name, line.where, 0);
+    built_.lines.push_back({line.name, built_.structure.elements.size(), count});
   }
 
   /// The ends of a line, which must be two nodes apart.
@@ -225,7 +227,7 @@ class StructureBuilder {
   }
 
   void take_beam(const BeamDescription& beam) {
-    add_name(beam);
+    add_name(beam, static_cast<std::size_t>(std::max(beam.elements, 1)));
     const std::string part = part_of(beam, "beam");
     const std::array<Index, 2> ends = ends_of(beam, part);
     Section section{};
@@ -333,7 +335,7 @@ class StructureBuilder {
   }
 
   void take_truss(const TrussDescription& truss) {
-    add_name(truss);
+    add_name(truss, 1);
     const std::string part = part_of(truss, "truss");
     const std::array<Index, 2> ends = ends_of(truss, part);
     Section unused{};
@@ -416,7 +418,7 @@ class StructureBuilder {
   ByName<Index> nodes_{"node"};
   ByName<Material> materials_{"material"};
   ByName<Section> sections_{"section"};
-  ByName<std::size_t> lines_{"element"};  // the first element of each that has a name
+  ByName<int> lines_{"element"};  // beams and trusses that have a name
   std::vector<NodeState> states_;
 };
 

@@ -105,6 +105,14 @@ struct ForceDescription {
   Location where;
 };
 
+/// A force per length that is the same all along a beam or truss, however many elements divide it.
+struct DistributedForceDescription {
+  std::string on;                   ///< the name of a beam or truss
+  std::vector<Quantity> direction;  ///< along x and y; along x, y and z in space [-]; its length multiplies the law
+  TimeLawDescription law;           ///< [N/m]
+  Location where;
+};
+
 /// A force or, with nodes, a displacement that is held in the static start and released in the transient.
 struct HeldDescription {
   std::string on;  ///< a coordinate
@@ -159,6 +167,7 @@ struct ModelDescription {
   DampingDescription damping;
   std::vector<SliderDescription> sliders;
   std::vector<ForceDescription> forces;
+  std::vector<DistributedForceDescription> distributed_forces;
   std::vector<HeldDescription> held_forces, displacements;
   std::optional<GravityDescription> gravity;
   std::optional<BaseMotionDescription> base_motion;

@@ -33,6 +33,13 @@ struct Force {
   TimeLaw law;  ///< [N]
 };
 
+/// A force per length along elements of the structure that follow one another.
+struct DistributedForce {
+  std::size_t first = 0, count = 0;  ///< elements
+  Axis direction = Axis::Zero();     ///< [-]
+  TimeLaw law;                       ///< [N/m]
+};
+
 struct BaseMotion {
   Vector direction;                 ///< of coordinates [n], dimensionless; 0 for those of nodes
   TimeLaw law;                      ///< acceleration of the ground [m/s2]
@@ -73,6 +80,7 @@ struct Model {
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;
   std::vector<Force> forces;
+  std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;
   Axis gravity = Axis::Zero();  ///< acts on the nodes [m/s2]
   std::optional<BaseMotion> base_motion;
