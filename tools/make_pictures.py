@@ -13,11 +13,23 @@ root = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(root / "tests" / "report"))
 from browser_test import Browser  # noqa: E402: lies beside the tests of the report
 
-# Of each example: the picture's name, and words of the caption of its figure (the first that has them is taken).
+# Of each example: the picture's name, and words of the caption of its figure. Where they are not enough: which of the
+# figures with these words, from 1, and what is chosen above it.
+RESPONSES, SLIDERS = "Responses in the steady state", "Sliders over a period"
 PICTURES = {
     "single-mass": {"motion": "Motion of the coordinates", "energy": "Energy ledger"},
-    "single-mass-slider": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger"},
-    "underplatform-damper": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger"},
+    "single-mass-slider": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger",
+                           "frf": RESPONSES, "phase": "Phases of the harmonics", "slip": SLIDERS,
+                           "loops": "Hysteresis loops at chosen points", "marched": (RESPONSES, 2, {}),
+                           "damper": "Damper curve:"},
+    "underplatform-damper": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger",
+                             "modes": ("Shape of a mode", 1, {"Mode": "Mode 4"}),
+                             "frf": (RESPONSES, 1, {"Scale": "Logarithmic"}), "map": "Amplitude over frequency and parameter",
+                             "loops": "Hysteresis loops at chosen points", "damper": "Damper curve:"},
+    "rotor-speed": {"responses": RESPONSES, "mass": "Damper curve:"},
+    "unbalance": {"run-up": RESPONSES, "slip": SLIDERS, "map": ("Amplitude over frequency and parameter", 2, {})},
+    "mistuned-sectors": {"bands": "Percentile bands over the samples", "distribution": "Distribution of the largest amplitude",
+                         "sensitivity": "Largest amplitude of each sample"},
     "method-study": {"error": "against step", "radius": "Spectral radius", "elongation": "Period elongation",
                      "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
                      "responses": "response beside"},
@@ -34,6 +46,24 @@ return [...document.querySelectorAll('figure')].map((figure, i) => [figure.query
 """
 
 DRAW = "document.getElementById('figure-' + arguments[0]).scrollIntoView({behavior: 'instant'})"
+
+# Presses the button, or takes the entry of the list, that is called so.
+CHOOSE = """
+const figure = document.querySelector(`#figure-${arguments[0]}`);
+const [label, option] = [arguments[1], arguments[2]];
+const buttons = figure.querySelector(`.chooser[aria-label="${label}"]`);
+if (buttons) {
+  const button = [...buttons.querySelectorAll('button')].find((entry) => entry.textContent === option);
+  button?.click();
+  return Boolean(button);
+}
+const list = figure.querySelector(`select[aria-label="${label}"]`);
+const index = list ? [...list.options].findIndex((entry) => entry.text === option) : -1;
+if (index < 0) return false;
+list.selectedIndex = index;
+list.dispatchEvent(new Event('change'));
+return true;
+"""
 
 SAVE = """
 const plot = document.querySelector(`#figure-${arguments[0]} .plot`);
@@ -75,13 +105,19 @@ def write(name, data):
     print(f"docs/pictures/{name}")
 
 
-def save(browser, example, picture, words):
+def save(browser, example, picture, figure):
+    words, which, choices = (figure, 1, {}) if isinstance(figure, str) else figure
     numbers = find(browser, words)
-    if not numbers:
-        print(f"{example}: no figure says \"{words}\"", file=sys.stderr)
+    if len(numbers) < which:
+        print(f"{example}: no figure {which} says \"{words}\"", file=sys.stderr)
         return False
+    for label, option in choices.items():
+        if not browser.script(CHOOSE, numbers[which - 1], label, option):
+            print(f"{example}: the figure {picture} has no {label} \"{option}\"", file=sys.stderr)
+            return False
+    is_sheet = example == "method-study" and picture == "responses"
     write(f"{example}-{picture}.png",
-          browser.script(SHEET, numbers) if picture == "responses" else browser.script(SAVE, numbers[0], WIDTH))
+          browser.script(SHEET, numbers) if is_sheet else browser.script(SAVE, numbers[which - 1], WIDTH))
     return True
 
 
@@ -97,8 +133,8 @@ def main():
                            check=True)
             browser.call("POST", "/url", {"url": (results / "report.html").as_uri()})
             browser.wait("return document.querySelectorAll('figure').length > 0")
-            for picture, words in PICTURES[name].items():
-                complete &= save(browser, name, picture, words)
+            for picture, figure in PICTURES[name].items():
+                complete &= save(browser, name, picture, figure)
             if name == "underplatform-damper":  # for the README: the report as it is read
                 browser.call("POST", "/window/rect", {"width": 1366, "height": 900})
                 browser.script(DRAW, find(browser, PICTURES[name]["motion"])[0])

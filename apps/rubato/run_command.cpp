@@ -116,6 +116,8 @@ class Runner {
       report = {RunStatus::failed, fault.what(), {}};
       is_over_ = true;  // what cannot be written now cannot be written later
     }
+    if (!options_.quiet)
+      for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
     for (const std::string& warning : report.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
     if (report.status != RunStatus::done)

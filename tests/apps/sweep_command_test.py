@@ -79,7 +79,8 @@ class Sweep(unittest.TestCase):
             friction, viscous, work = (float(row[i]) for i in (9, 12, 13))
             self.assertAlmostEqual(work, viscous + friction, delta=1e-9 * work)
         self.assertEqual(self.rows("out/frf.linear.csv")[0],
-                         ["k", "limit", "angular_frequency [rad/s]", "mass.amplitude [m]", "mass.phase [rad]"])
+                         ["k", "angular_frequency [rad/s]", "mass.free_amplitude [m]", "mass.free_phase [rad]",
+                          "mass.stuck_amplitude [m]", "mass.stuck_phase [rad]"])
         self.assertFalse((self.folder / "out/frf.resume").exists())
 
     def test_results_do_not_depend_on_the_number_of_threads(self):

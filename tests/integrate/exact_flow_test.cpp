@@ -227,6 +227,49 @@ TEST(ExactFlow, DoesNotDependOnSamplesNorOnRestarts) {
   }
 }
 
+// The flow depends on its start continuously, also where sliders at their limits are about to turn: with rates of 1e-16
+// to 1e-9, inward or outward, it does what it does with none, to the size of the rate. The blades' displacements are
+// fifty times the sliders', so that these rates pass through the round-off of the one and of the other. What the flow
+// makes of a change is bounded by the energy in it: 1 m/s of a blade to 4 m/s, 0.4 m and 4 N. Round-off: 1e-12.
+TEST(ExactFlow, DependsContinuouslyOnTheRatesAtWhichSlidersTurn) {
+  const auto system = testing::damper_model(1.0, 7.375);
+  ExactFlow flow(system);
+  const auto end = [&](double q, double first_rate, double second_rate) {
+    system::State state = system.start();
+    state.q << 0.0, q, 0.0, -q, 0.0;
+    state.v << 0.0, first_rate, 0.0, second_rate, 0.0;
+    state.slider_force << std::copysign(0.5, q), -std::copysign(0.5, q);
+    Trace trace;
+    EXPECT_EQ(flow.advance(state, 3.0, {}, trace).end, ExactEnd::reached) << q << ' ' << first_rate;
+    return state;
+  };
+  for (int k = 0; k < 20; ++k) {  // forces round up and down
+    const double q = (k % 2 == 0 ? 2.5 : -2.5) + 0.0237 * k;
+    const system::State still = end(q, 0.0, 0.0);
+    for (double rate = 1e-16; rate < 1e-9; rate *= 3.0)
+      for (const auto& [first, second] : {std::pair{rate, 0.0}, {-rate, 0.0}, {rate, -0.1 * rate}, {rate, rate}}) {
+        const system::State moving = end(q, first, second);
+        EXPECT_LT((moving.q - still.q).norm(), 1e-12 + rate) << q << ' ' << first << ' ' << second;
+        EXPECT_LT((moving.v - still.v).norm(), 1e-11 + 8.0 * rate) << q << ' ' << first << ' ' << second;
+        EXPECT_LT((moving.slider_force - still.slider_force).norm(), 1e-11 + 8.0 * rate) << q << ' ' << first;
+      }
+  }
+}
+
+// Opposite forces on two sectors, and equal sliders between: both turn at one instant but for round-off, and the damper
+// stays at rest.
+TEST(ExactFlow, TurnsSymmetricalSlidersTogether) {
+  for (const double normal_load : {0.1, 1.2452, 7.0, 20.0}) {
+    const auto system = testing::damper_model(normal_load, 7.375);
+    const Trace trace = run(system, 200.0, {200.0});
+    EXPECT_NEAR(trace.samples[0].q[4], 0.0, 1e-11);
+    EXPECT_NEAR(trace.samples[0].q[1], -trace.samples[0].q[3], 1e-11);
+    EXPECT_EQ(trace.transitions.size() % 2, 0u);
+    for (std::size_t i = 0; i + 1 < trace.transitions.size(); i += 2)
+      ASSERT_NEAR(trace.transitions[i].t, trace.transitions[i + 1].t, 1e-10);
+  }
+}
+
 TEST(ExactFlow, RefusesFormulasOfTimeAndLargeModels) {
   EXPECT_THROW(ExactFlow{testing::chain(301, 1)}, InvalidInput);
   system::LocallyNonlinear::Parts parts;

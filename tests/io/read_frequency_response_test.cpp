@@ -220,6 +220,10 @@ TEST(FrequencyResponseStudyError, RefusesSamplesWithoutADistribution) {
 }
 
 TEST(FrequencyResponseStudyError, RefusesOptionsThatDoNotGoTogether) {
+  EXPECT_EQ(
+      with(range + "solver = \"harmonic_balance\"\nstart = \"rest\"\n"),
+      "study.toml:24:9: error: analysis \"frf\": start = \"rest\" is what a march from the start ends with, which "
+      "harmonic balance does not know; take another solver, or start = \"unloaded\"");
   EXPECT_EQ(with(range + "direction = \"down\"\n"),
             "study.toml:23:13: error: analysis \"frf\": a direction matters only where a point remembers the one "
             "before; say start = \"previous\", or leave direction out");

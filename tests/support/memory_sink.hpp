@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -53,6 +54,13 @@ class MemorySink final : public results::Sink {
     void flush() override {}
     Table& table;
   };
+};
+
+struct MemoryJournal final : results::Journal {
+  std::vector<std::vector<double>> pieces;
+  long finished() const override { return static_cast<long>(pieces.size()); }
+  std::vector<double> read(long piece) override { return pieces.at(static_cast<std::size_t>(piece)); }
+  void keep(std::span<const double> values) override { pieces.emplace_back(values.begin(), values.end()); }
 };
 
 struct QuietProgress final : analysis::Progress {

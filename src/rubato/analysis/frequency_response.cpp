@@ -72,8 +72,6 @@ class Tables {
   void write(const PieceResult& result) {
     append(*main_, result.main, layouts_.main.width());
     append(*linear_, result.linear, layouts_.linear.width());
-    held_.insert(held_.end(), result.held.begin(), result.held.end());
-    if (result.piece.first_step + result.piece.steps == plan_.steps.size()) release();
     if (waveforms_) append(*waveforms_, result.waveforms, layouts_.waveforms.width());
     counts_.add(result.counts);
     if (bands_) take_bands(result);
@@ -81,7 +79,6 @@ class Tables {
 
   /// Writes what is known at the end only.
   void finish() {
-    release();
     if (bands_) bands_->write(*band_rows_);
   }
 
@@ -91,11 +88,6 @@ class Tables {
   static void append(results::RowWriter& writer, const std::vector<double>& rows, std::size_t width) {
     for (std::size_t place = 0; place + width <= rows.size(); place += width)
       writer.append({rows.data() + place, width});
-  }
-
-  void release() {
-    append(*linear_, held_, layouts_.linear.width());
-    held_.clear();
   }
 
   void take_bands(const PieceResult& result) {
@@ -110,7 +102,6 @@ class Tables {
   std::unique_ptr<results::RowWriter> main_, linear_, waveforms_, band_rows_;
   std::optional<BandTable> bands_;
   SweepCounts counts_;
-  std::vector<double> held_;  ///< rows of the second limit, until the first has all of its line
 };
 
 /// "N0 = 10, angular_frequency = 7.5 rad/s"

@@ -1,8 +1,16 @@
 #include <rubato/analysis/frequency_response_piece.hpp>
 
+#include <rubato/integrate/steady/quasi_periodic.hpp>
+
 #include <algorithm>
+#include <limits>
 
 namespace rubato::analysis {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 void SweepCounts::add(const SweepCounts& other) {
   for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i] += other.by_status[i];
@@ -24,11 +32,10 @@ double SweepCounts::points() const {
 
 std::vector<double> PieceResult::packed() const {
   std::vector<double> values(counts.by_status.begin(), counts.by_status.end());
-  values.insert(values.end(),
-                {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
-                 counts.first_impossible, static_cast<double>(main.size()), static_cast<double>(linear.size()),
-                 static_cast<double>(waveforms.size()), static_cast<double>(held.size())});
-  for (const auto* rows : {&main, &linear, &waveforms, &held}) values.insert(values.end(), rows->begin(), rows->end());
+  values.insert(values.end(), {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
+                               counts.first_impossible, static_cast<double>(main.size()),
+                               static_cast<double>(linear.size()), static_cast<double>(waveforms.size())});
+  for (const auto* rows : {&main, &linear, &waveforms}) values.insert(values.end(), rows->begin(), rows->end());
   return values;
 }
 
@@ -41,9 +48,9 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const doubl
   for (double* value : {&result.counts.iterations, &result.counts.negative_loads, &result.counts.first_negative,
                         &result.counts.first_unbounded, &result.counts.first_impossible})
     *value = next();
-  std::array<std::size_t, 4> sizes{};
+  std::array<std::size_t, 3> sizes{};
   for (std::size_t& size : sizes) size = static_cast<std::size_t>(next());
-  const std::array<std::vector<double>*, 4> tables{&result.main, &result.linear, &result.waveforms, &result.held};
+  const std::array<std::vector<double>*, 3> tables{&result.main, &result.linear, &result.waveforms};
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(place);
     tables[i]->assign(begin, begin + static_cast<std::ptrdiff_t>(sizes[i]));
@@ -61,6 +68,7 @@ PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
     Lane lane;
     lane.drive =
         std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
+    if (plan_.route.kind == SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
     lane.values.resize(plan_.sweep.names().size());
     lanes_.push_back(std::move(lane));
   }
@@ -98,6 +106,12 @@ void PieceSolver::require_structure(Lane& lane, double point) {
   structure_values_ = std::move(wanted);
 }
 
+/// What is solved next does not depend on what was solved before.
+void PieceSolver::forget() {
+  for (const auto* solver : {&solver_, &free_, &stuck_})
+    if (*solver) (*solver)->forget();
+}
+
 void PieceSolver::take_line(Lane& lane, long line) {
   plan_.sweep.values(line, lane.values);
   std::vector<bool> others = plan_.is_linear;
@@ -115,8 +129,16 @@ void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitatio
   }
   free_->solve(excitation, integrate::SteadyStart::unloaded, free_response_);
   stuck_->solve(excitation, integrate::SteadyStart::unloaded, stuck_response_);
-  tables_.linear.add(place, false, free_response_, result.linear);
-  tables_.linear.add(place, true, stuck_response_, result.held);
+  tables_.linear.add(place, free_response_, stuck_response_, result.linear);
+}
+
+/// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
+void PieceSolver::march_without_period(Lane& lane, double point, integrate::SteadyResponse& response) {
+  const ParametricStructure here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
+  response =
+      integrate::solve_quasi_periodic(here.system, marching_options(plan_.route), plan_.request, lane.drive->window());
+  response.harmonics.setConstant(static_cast<Index>(plan_.observed.size()),
+                                 static_cast<Index>(plan_.request.harmonics.size()), nothing);
 }
 
 void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
@@ -134,7 +156,8 @@ void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, co
     if (counts.first_negative < 0.0) counts.first_negative = point_number(line, step);
   }
   // Both directions have the same limits.
-  if (lane.has_limits && step < plan_.frequencies.size()) solve_linear(place, excitation, result);
+  if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
+    solve_linear(place, excitation, result);
   progress_.add(1);
 }
 
@@ -153,12 +176,15 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
     try {
       if (is_new_line || plan_.structure_follows_point) {
         require_structure(mine, point);
-        if (is_new_line) solver_->forget();
+        if (is_new_line) forget();
         mine.drive->take_line(mine.values, *structure_);
         is_new_line = false;
       }
       mine.drive->take_point(point, excitation);
-      solver_->solve(excitation, plan_.start, response);
+      if (mine.drive->has_period())
+        solver_->solve(excitation, plan_.start, response);
+      else
+        march_without_period(mine, point, response);
     } catch (const InvalidInput&) {
       tables_.main.add_impossible(place_of(mine, step), result.main);
       result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
@@ -182,14 +208,17 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
   }
   try {
     require_structure(lanes_[0], point_value(piece.first_step));
-    solver_->forget();
+    forget();
     for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_line(lanes_[i].values, *structure_);
     for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {
       if (stop_.load(std::memory_order_relaxed)) {
         result.is_whole = false;
         break;
       }
-      for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_point(point_value(step), excitations_[i]);
+      for (std::size_t i = 0; i < count; ++i) {
+        lanes_[i].drive->take_point(point_value(step), excitations_[i]);
+        if (!lanes_[i].drive->has_period()) throw InvalidInput("points without a period are marched one by one");
+      }
       solver_->solve_lanes({excitations_.data(), count}, plan_.start, {responses_.data(), count});
       for (std::size_t i = 0; i < count; ++i)
         finish_point(lanes_[i], piece.first_line + static_cast<long>(i), step, excitations_[i], responses_[i],
@@ -205,7 +234,6 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
     const PieceResult& part = lanes_[i].result;
     result.main.insert(result.main.end(), part.main.begin(), part.main.end());
     result.linear.insert(result.linear.end(), part.linear.begin(), part.linear.end());
-    result.linear.insert(result.linear.end(), part.held.begin(), part.held.end());
     result.counts.add(part.counts);
   }
   return true;
@@ -215,12 +243,8 @@ PieceResult PieceSolver::solve(const SweepPiece& piece) {
   PieceResult result;
   result.piece = piece;
   if (piece.lines > 1 && solve_lanes(piece, result)) return result;
-  for (int i = 0; i < piece.lines && result.is_whole; ++i) {
+  for (int i = 0; i < piece.lines && result.is_whole; ++i)
     solve_line({piece.first_line + i, 1, piece.first_step, piece.steps}, result);
-    if (piece.steps < plan_.steps.size()) continue;
-    result.linear.insert(result.linear.end(), result.held.begin(), result.held.end());
-    result.held.clear();
-  }
   return result;
 }
 

@@ -36,8 +36,6 @@ struct PieceResult {
   SweepPiece piece;
   bool is_whole = true;  ///< false: interrupted, and the rows are those of the points that were reached
   std::vector<double> main, linear, waveforms;
-  std::vector<double>
-      held;  ///< rows of `linear` that belong behind the end of the line, in a piece that is a part of it
   SweepCounts counts;
 
   /// As one list of numbers, and back, for the journal.
@@ -99,8 +97,10 @@ class PieceSolver {
 
   void solve_line(const SweepPiece& piece, PieceResult& result);
   bool solve_lanes(const SweepPiece& piece, PieceResult& result);
+  void forget();
   void take_line(Lane& lane, long line);
   Lane& take_point(long line, std::size_t step);
+  void march_without_period(Lane& lane, double point, integrate::SteadyResponse& response);
   void solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result);
   void require_structure(Lane& lane, double point);
   void finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,

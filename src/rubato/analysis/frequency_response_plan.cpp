@@ -1,6 +1,7 @@
 #include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/frequency_response_tables.hpp>
 #include <rubato/analysis/parametric_excitation.hpp>
+#include <rubato/analysis/steady_plan.hpp>
 
 #include <fmt/format.h>
 
@@ -25,23 +26,6 @@ long whole_number(const model::Quantity& quantity, long least, const numerics::P
   return static_cast<long>(value);
 }
 
-/// Loads must repeat: harmonic laws only.
-void require_harmonic_loads(const model::ModelDescription& model, const Location& where, const std::string& title) {
-  const auto require = [&](const model::TimeLawDescription& law, const Location& place_of_load,
-                           const std::string& part) {
-    if (std::holds_alternative<model::HarmonicDescription>(law)) return;
-    throw InvalidInput(
-        place(place_of_load, where),
-        fmt::format("{}{} is {}: a steady response needs harmonic loads (amplitude, angular_frequency, "
-                    "phase); write it as a sum of them, or run a transient",
-                    title, part, std::holds_alternative<model::TableDescription>(law) ? "a table" : "a formula of t"));
-  };
-  for (const auto& force : model.forces) require(force.law, force.where, fmt::format("the force on \"{}\"", force.on));
-  if (model.base_motion) require(model.base_motion->law, model.base_motion->where, "[base_motion]");
-  if (model.forces.empty() && !model.base_motion)
-    throw InvalidInput(where, title + "nothing drives the model; add a [[force]] with amplitude and angular_frequency");
-}
-
 std::vector<double> frequencies_of(const Description& description, const numerics::Parameters& parameters,
                                    const std::string& title, const Location& where) {
   const std::string key = title + (description.frequencies_in_hertz ? "frequency" : "angular_frequency");
@@ -60,75 +44,13 @@ std::vector<double> frequencies_of(const Description& description, const numeric
   return values;
 }
 
-std::string quoted(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
-  return text;
-}
-
-/// The parameter that takes the frequencies.
-std::size_t excitation_parameter(const Description& description, const Sweep& sweep, const StudyInput& input,
-                                 const std::string& title, const Location& where) {
-  std::vector<std::string> known;
-  for (const auto& parameter : input.parameters) known.push_back(parameter.first);
-  const ParameterDependence dependence(input.study, input.parameters, sweep.places());
-  const auto is_swept = [&](std::size_t i) {
-    return std::find(sweep.places().begin(), sweep.places().end(), i) != sweep.places().end();
-  };
-  std::size_t chosen = known.size();
-  const Location at = place(description.excitation_where, where);
-  if (!description.excitation.empty()) {
-    const auto found = std::find(known.begin(), known.end(), description.excitation);
-    if (found == known.end())
-      throw InvalidInput(at, fmt::format("{}excitation names \"{}\", which is no parameter{}", title,
-                                         description.excitation, suggestion(description.excitation, known)));
-    chosen = static_cast<std::size_t>(found - known.begin());
-  } else {
-    std::vector<std::string> candidates, free;
-    for (const std::size_t i : dependence.in_frequencies()) {
-      candidates.push_back(known[i]);
-      if (is_swept(i)) continue;
-      free.push_back(known[i]);
-      chosen = i;
-    }
-    if (candidates.empty())
-      throw InvalidInput(where, title +
-                                    "no parameter drives the forces: write angular_frequency = \"Omega\" in the "
-                                    "[[force]], and Omega = ... in [parameters]");
-    if (free.size() > 1)
-      throw InvalidInput(where, fmt::format("{}several parameters stand in the frequencies of the forces ({}); say "
-                                            "which one takes the frequencies: excitation = \"{}\"",
-                                            title, quoted(free), free.front()));
-    if (free.empty()) chosen = dependence.in_frequencies().front();
-  }
-  for (std::size_t i = 0; i < sweep.places().size(); ++i)
-    if (sweep.places()[i] == chosen)
-      throw InvalidInput(sweep.where()[i], fmt::format("{}the parameter \"{}\" takes the frequencies and cannot be "
-                                                       "swept at once; give its values as angular_frequency",
-                                                       title, known[chosen]));
-  if (!dependence.reaches(chosen, Role::frequency))
-    throw InvalidInput(at, fmt::format("{}no force has a frequency that depends on the parameter \"{}\"; write "
-                                       "angular_frequency = \"{}\" in the [[force]]",
-                                       title, known[chosen], known[chosen]));
-  return chosen;
-}
-
 void plan_sweep(FrequencyResponsePlan& plan, const std::string& title) {
   const auto& dependence = plan.dependence;
   const auto taken = reserved_columns();
   for (std::size_t i = 0; i < plan.sweep.places().size(); ++i) {
     const std::size_t parameter = plan.sweep.places()[i];
-    const std::string& name = plan.sweep.names()[i];
-    if (!dependence.reaches_anything(parameter))
-      throw InvalidInput(plan.sweep.where()[i],
-                         fmt::format("{}nothing in the model depends on the swept parameter \"{}\"; use it there, or "
-                                     "leave it out of the sweep",
-                                     title, name));
-    if (std::find(taken.begin(), taken.end(), name) != taken.end())
-      throw InvalidInput(plan.sweep.where()[i],
-                         fmt::format("{}the swept parameter \"{}\" would head a column of results that has another "
-                                     "meaning; rename it",
-                                     title, name));
+    require_effect(dependence, parameter, {plan.sweep.names()[i], plan.sweep.where()[i]}, taken, "swept parameter",
+                   title);
     plan.is_structural.push_back(dependence.reaches(parameter, Role::structure));
     plan.divides_lanes.push_back(plan.is_structural.back() || dependence.reaches(parameter, Role::frequency));
     plan.is_linear.push_back(plan.divides_lanes.back() || dependence.reaches(parameter, Role::load));
@@ -147,6 +69,11 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
     throw InvalidInput(place(description.start_where, where),
                        fmt::format("{}start = \"previous\" needs a structure that stays; here it changes with \"{}\"",
                                    title, input.parameters[plan.excitation].first));
+  if (description.start == Start::rest && description.route == Description::Route::harmonic_balance)
+    throw InvalidInput(place(description.start_where, where),
+                       title +
+                           "start = \"rest\" is what a march from the start ends with, which harmonic balance does not "
+                           "know; take another solver, or start = \"unloaded\"");
   if (description.direction != Direction::up && description.start != Start::previous)
     throw InvalidInput(place(description.direction_where, where),
                        title +
@@ -224,6 +151,7 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
 /// The first and the last point can be made; what lies between is judged as it is reached.
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
+  if (plan.route.kind == SteadyRoute::Kind::time_marching) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
   for (const long line : {0L, plan.sweep.lines() - 1}) {
     plan.sweep.values(line, values);
@@ -234,6 +162,9 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input) {
       at.take_line(values, structure);
       at.take_point(point, excitation);
       if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
+      if (at.has_period() && !excitation.harmonics.empty())
+        plan.route.linear.highest =
+            std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
     }
   }
 }
@@ -250,15 +181,12 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   const std::string title = "analysis \"" + name + "\": ";
   require_harmonic_loads(input.study.model, where, title);
   Sweep sweep(description.sweep, place(description.sweep_where, where), input, title);
-  const std::size_t excitation = excitation_parameter(description, sweep, input, title, where);
-  std::vector<std::size_t> fixed = sweep.places();
-  fixed.push_back(excitation);
-  for (std::size_t i = 0; i < input.parameters.size(); ++i)
-    if (std::any_of(input.overrides.begin(), input.overrides.end(),
-                    [&](const auto& setting) { return setting.first == input.parameters[i].first; }))
-      fixed.push_back(i);
+  const std::size_t excitation = excitation_parameter({description.excitation, description.excitation_where},
+                                                      {sweep.places(), sweep.where()}, input, title, where);
+  std::vector<std::size_t> varied = sweep.places();
+  varied.push_back(excitation);
   FrequencyResponsePlan plan{frequencies_of(description, input.parameters, title, where), excitation, 1.0,
-                             std::move(sweep), ParameterDependence(input.study, input.parameters, fixed)};
+                             std::move(sweep), dependence_of(input, std::move(varied))};
   if (plan.dependence.is_in_hertz(excitation)) plan.excitation_factor = 0.5 / std::numbers::pi;
   plan_sweep(plan, title);
   plan_memory(plan, description, input, title, where);
@@ -266,6 +194,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   plan_request(plan, description, input, title, where);
   plan_waveforms(plan, description, input, title, where);
   require_ends(plan, input);
+  plan.route.linear.points = static_cast<Index>(plan.frequencies.size());
   return plan;
 }
 

@@ -18,7 +18,6 @@ using Block = results::Block;
 using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<int, 5> percents{5, 25, 50, 75, 95};
 
 Block scalar(const std::string& variable, const std::string& unit, const std::string& description) {
   return {variable, unit, description, "", {}};
@@ -72,7 +71,7 @@ Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& in
                         {"start", start_name(plan.start)},
                         {"excitation", input.parameters[plan.excitation].first},
                         {"sweep", sweep_name(plan.sweep.kind())},
-                        {"swept", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
+                        {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
                         {"frequencies", std::to_string(plan.frequencies.size())},
                         {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
@@ -161,8 +160,10 @@ std::vector<std::string> reserved_columns() {
           "samples",
           "missing",
           "free_amplitude",
+          "free_angle_amplitude",
           "free_phase",
           "stuck_amplitude",
+          "stuck_angle_amplitude",
           "stuck_phase"};
 }
 
@@ -253,21 +254,26 @@ LinearTable::LinearTable(const std::string& name, const FrequencyResponsePlan& p
     : layout_{name, "linear", "point", {}, {{"type", "frequency_response_linear"}}}, is_linear_(plan.is_linear) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, is_linear_, blocks);
-  blocks.push_back({"limit", "", "without sliders, or with all of them stuck", "", {}, {"free", "stuck"}});
   blocks.push_back(angular_frequency());
-  add_amplitudes(plan.observed, blocks);
-  add_phases(plan.observed, "phase", "phase of harmonic 1, A cos(omega t + phase)", blocks);
+  for (const auto& [limit, description] :
+       {std::pair<std::string, std::string>{"free", "without sliders"}, {"stuck", "with all sliders stuck"}}) {
+    add_blocks(plan.observed, {limit + "_amplitude", "m", "half peak to peak of the displacement " + description},
+               {limit + "_angle_amplitude", "rad", "half peak to peak of the rotation " + description}, blocks);
+    add_phases(plan.observed, limit + "_phase", "phase of harmonic 1 " + description + ", A cos(omega t + phase)",
+               blocks);
+  }
   width_ = layout_.row_width();
 }
 
-void LinearTable::add(const RowPlace& place, bool is_stuck, const integrate::SteadyResponse& limit,
-                      std::vector<double>& rows) const {
+void LinearTable::add(const RowPlace& place, const integrate::SteadyResponse& free,
+                      const integrate::SteadyResponse& stuck, std::vector<double>& rows) const {
   for (std::size_t i = 0; i < place.line.size(); ++i)
     if (is_linear_[i]) rows.push_back(place.line[i]);
-  rows.push_back(is_stuck ? 1.0 : 0.0);
   rows.push_back(place.angular_frequency);
-  append(limit.amplitude, rows);
-  for (Index i = 0; i < limit.harmonics.rows(); ++i) rows.push_back(phase_of(limit.harmonics(i, 0)));
+  for (const integrate::SteadyResponse* limit : {&free, &stuck}) {
+    append(limit->amplitude, rows);
+    for (Index i = 0; i < limit->harmonics.rows(); ++i) rows.push_back(phase_of(limit->harmonics(i, 0)));
+  }
 }
 
 WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
@@ -318,9 +324,11 @@ BandTable::BandTable(const std::string& name, const FrequencyResponsePlan& plan)
   auto& blocks = layout_.blocks;
   if (plan.has_both_directions) blocks.push_back(direction());
   blocks.push_back(angular_frequency());
-  blocks.push_back(scalar("percentile", "1", "how many percent of the samples lie below"));
-  add_blocks(plan.observed, {"amplitude", "m", "amplitude below which so many samples lie"},
-             {"angle_amplitude", "rad", "amplitude below which so many samples lie"}, blocks);
+  for (const int percent : band_percents) {
+    const std::string description = fmt::format("amplitude below which {} % of the samples lie", percent);
+    add_blocks(plan.observed, {fmt::format("amplitude_p{:02}", percent), "m", description},
+               {fmt::format("angle_amplitude_p{:02}", percent), "rad", description}, blocks);
+  }
   blocks.push_back(scalar("missing", "1", "samples without an amplitude here"));
 }
 
@@ -339,15 +347,13 @@ void BandTable::write(results::RowWriter& writer) {
   const std::size_t width = plan_.observed.size();
   std::vector<double> row;
   for (std::size_t step = 0; step < plan_.steps.size(); ++step) {
-    for (const int percent : percents) {
-      row.clear();
-      if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
-      row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
-      row.push_back(percent);
+    row.clear();
+    if (plan_.has_both_directions) row.push_back(plan_.steps[step].is_downwards ? 1.0 : 0.0);
+    row.push_back(plan_.frequencies[plan_.steps[step].frequency]);
+    for (const int percent : band_percents)
       for (std::size_t i = 0; i < width; ++i) row.push_back(percentile(values_[step * width + i], percent / 100.0));
-      row.push_back(missing_[step]);
-      writer.append(row);
-    }
+    row.push_back(missing_[step]);
+    writer.append(row);
   }
 }
 

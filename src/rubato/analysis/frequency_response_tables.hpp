@@ -3,6 +3,7 @@
 #include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/results/sink.hpp>
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ inline constexpr std::size_t point_statuses = 6;
 /// The words of the column `status`, by PointStatus.
 const std::vector<std::string>& status_words();
 PointStatus point_status(integrate::SteadyStatus status);
+
+/// Percentiles that are kept of random samples.
+inline constexpr std::array<int, 5> band_percents{5, 25, 50, 75, 95};
 
 /// Columns whose names a swept parameter cannot bear.
 std::vector<std::string> reserved_columns();
@@ -58,7 +62,7 @@ class LinearTable {
   LinearTable(const std::string& name, const FrequencyResponsePlan& plan);
   const results::TableLayout& layout() const { return layout_; }
   std::size_t width() const { return width_; }
-  void add(const RowPlace& place, bool is_stuck, const integrate::SteadyResponse& limit,
+  void add(const RowPlace& place, const integrate::SteadyResponse& free, const integrate::SteadyResponse& stuck,
            std::vector<double>& rows) const;
 
  private:

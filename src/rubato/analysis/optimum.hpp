@@ -22,16 +22,18 @@ class PeakFamily {
 /// The parameter with the lowest (or highest) F, and what certifies it.
 struct Optimum {
   enum class Kind {
-    smooth,  ///< one peak, whose derivatives to x and to p vanish
-    kink,    ///< two peaks are equal; one falls with p, the other rises
-    bound,   ///< an end of the range of p, beyond which F would go on
-    flat,    ///< F does not change with p
+    smooth,       ///< one peak, whose derivatives to x and to p vanish
+    kink,         ///< two peaks are equal; one falls with p, the other rises
+    corner,       ///< one peak, which falls on one side of p and rises on the other
+    bound,        ///< an end of the range of p, beyond which F would go on
+    flat,         ///< F does not change with p
+    uncertified,  ///< the best that was found; none of the above could be shown
   };
   Kind kind = Kind::smooth;
   double parameter = 0.0;
-  std::vector<Peak> active;               ///< one peak, or the two of a kink
+  std::vector<Peak> active;               ///< one peak, or the two of a kink; before and behind a corner
   std::array<double, 2> derivative{};     ///< dF/dp of each active peak
-  std::array<double, 2> multiplier{1.0};  ///< >= 0, sum 1: sum of multiplier * derivative is 0 at a kink
+  std::array<double, 2> multiplier{1.0};  ///< >= 0, sum 1: sum of multiplier * derivative is 0 at a kink or corner
   double curvature = 0.0;                 ///< d2F/dp2 of a smooth one
 };
 

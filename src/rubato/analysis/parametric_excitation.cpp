@@ -149,9 +149,28 @@ void ParametricExcitation::find_orders() {
   for (const Load& load : loads_)
     if (load.angular_frequency > 0.0) frequencies.push_back(load.angular_frequency);
   if (frequencies.empty()) throw InvalidInput("no load has a frequency above zero: nothing repeats");
+  has_period_ = needs_period_ || integrate::common_fundamental(frequencies).has_value();
+  if (!has_period_) {
+    for (Load& load : loads_) load.order = 0;
+    return;
+  }
   const double fundamental = integrate::fundamental_of(frequencies);
   for (Load& load : loads_)
     load.order = load.angular_frequency > 0.0 ? integrate::order_over(load.angular_frequency, fundamental) : 0;
+}
+
+double ParametricExcitation::window() const {
+  constexpr double beats = 4.0, periods = 30.0;
+  double slowest = HUGE_VAL, nearest = HUGE_VAL;
+  for (const Load& load : loads_) {
+    if (!(load.angular_frequency > 0.0)) continue;
+    slowest = std::min(slowest, load.angular_frequency);
+    for (const Load& other : loads_) {
+      const double beat = std::abs(load.angular_frequency - other.angular_frequency);
+      if (other.angular_frequency > 0.0 && beat > 1e-10 * load.angular_frequency) nearest = std::min(nearest, beat);
+    }
+  }
+  return 2.0 * std::numbers::pi * std::max(beats / nearest, periods / slowest);
 }
 
 void ParametricExcitation::fill(integrate::Excitation& out) const {
@@ -204,8 +223,16 @@ void ParametricExcitation::take_point(double value, integrate::Excitation& out) 
   const bool amplitudes_have_changed = refresh_loads();
   const bool same_orders = !is_new_line_ && orders_hold();
   if (!same_orders) find_orders();
-  if (amplitudes_have_changed || !same_orders) fill(out);
   refresh_limits(out);
+  if (!has_period_) {
+    const auto slower = [](const Load& a, const Load& b) {
+      return (a.angular_frequency > 0.0 ? a.angular_frequency : HUGE_VAL) <
+             (b.angular_frequency > 0.0 ? b.angular_frequency : HUGE_VAL);
+    };
+    out.angular_frequency = std::min_element(loads_.begin(), loads_.end(), slower)->angular_frequency;
+    return;
+  }
+  if (amplitudes_have_changed || !same_orders) fill(out);
   const auto moving = std::find_if(loads_.begin(), loads_.end(), [](const Load& load) { return load.order > 0; });
   out.angular_frequency = moving->angular_frequency / moving->order;
   is_new_line_ = false;

@@ -39,8 +39,14 @@ class ParametricExcitation {
   /// Begins a line. The structure is that of these values; it is looked at only here.
   void take_line(std::span<const double> values, const ParametricStructure& structure);
   /// Writes the excitation at a point of the line into `out`, which must be the same object for all points of a line.
-  /// Throws InvalidInput for values that cannot be: not finite, negative frequencies, no common period.
+  /// Throws InvalidInput for values that cannot be: not finite, negative frequencies, and no common period unless that
+  /// is allowed: then `out` has the limits alone.
   void take_point(double value, integrate::Excitation& out);
+  void allow_no_period() { needs_period_ = false; }
+  /// Whether the loads at the last point have a common period.
+  bool has_period() const { return has_period_; }
+  /// A time that holds the slowest ups and downs of loads without a common period, several times over [s].
+  double window() const;
 
   /// All parameters at values of the line and of the point, for building a structure.
   const numerics::Parameters& parameters_at(std::span<const double> line, double point);
@@ -92,7 +98,7 @@ class ParametricExcitation {
   std::vector<Limit> limits_;
   std::vector<NegativeLoad> negative_loads_;
   const ParametricStructure* structure_ = nullptr;
-  bool is_new_line_ = true;
+  bool is_new_line_ = true, needs_period_ = true, has_period_ = true;
 };
 
 }  // namespace rubato::analysis

@@ -92,7 +92,7 @@ class Search {
     // No curvature to trust: a corner of the curve. It is where the bracket closes.
     for (int i = 0; i < 5; ++i)
       if (!narrow(bracket)) return std::nullopt;
-    return Peak{curve_, bracket.middle, bracket.at_middle, 0.0, Peak::Kind::interior};
+    return Peak{curve_, bracket.middle, bracket.at_middle, NAN, Peak::Kind::interior};
   }
 
  private:

@@ -16,7 +16,7 @@ struct Peak {
   enum class Kind { interior, lower_end, upper_end };
   Index curve = 0;
   double at = 0.0, value = 0.0;
-  double slope = 0.0;  ///< of the curve there: round-off where it is interior
+  double slope = 0.0;  ///< of the curve there: round-off where it is interior, NaN at a corner
   Kind kind = Kind::interior;
 };
 

@@ -38,6 +38,7 @@ struct RunReport {
   std::string message;
   std::vector<std::pair<std::string, std::string>> statistics;  ///< steps, factorisations, ...: kept with the results
   std::vector<std::string> warnings = {};                       ///< what the user should know of results that are there
+  std::vector<std::string> findings = {};  ///< what was asked for, where it fits a line: an optimum
 };
 
 }  // namespace rubato::analysis

@@ -1,3 +1,5 @@
+#include <rubato/analysis/damper_curve.hpp>
+#include <rubato/analysis/damper_curve_plan.hpp>
 #include <rubato/analysis/frequency_response.hpp>
 #include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/method_study.hpp>
@@ -58,6 +60,18 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
   return result;
 }
 
+AnalysisOutline outline(const DamperCurvePlan& plan, const system::LocallyNonlinear& system) {
+  const double columns = static_cast<double>(plan.sweep.names().size()) + 8.0 +
+                         static_cast<double>(plan.observed.size()) + 2.0 * static_cast<double>(system.slider_count());
+  AnalysisOutline result;
+  result.points = plan.points();
+  result.expected_bytes = 36.0 * 2.0 * plan.points() * columns;  // peaks and limits are about as many again
+  if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points();
+  result.summary = fmt::format("damper curve over {}, {} lines of {} values", plan.parameter, plan.sweep.lines(),
+                               plan.values.size());
+  return result;
+}
+
 AnalysisOutline outline(const ModesPlan& plan, const system::LocallyNonlinear& system) {
   const double limits = system.slider_count() > 0 ? 2.0 : 1.0, width = 7.0 + 2.0 * double(plan.observed.size());
   return {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
@@ -107,6 +121,12 @@ struct Check {
     at_the_analysis([&] { (void)steady_solvers(plan.route).response(input.system, plan.request); });
     return outline(plan, input.system);
   }
+
+  AnalysisOutline operator()(const model::DamperCurveDescription& curve) const {
+    const DamperCurvePlan plan = plan_damper_curve(analysis.name, analysis.where, curve, input);
+    at_the_analysis([&] { (void)damper_curve_solvers().response(input.system, plan.request); });
+    return outline(plan, input.system);
+  }
 };
 
 struct Run {
@@ -137,6 +157,11 @@ struct Run {
     const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
     return run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
   }
+
+  RunReport operator()(const model::DamperCurveDescription& curve) const {
+    return run_damper_curve(analysis.name, plan_damper_curve(analysis.name, analysis.where, curve, input), input,
+                            damper_curve_solvers(), context);
+  }
 };
 
 }  // namespace
@@ -150,6 +175,8 @@ RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyIn
   auto notes = report.statistics;
   for (std::size_t i = 0; i < report.warnings.size(); ++i)
     notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);
+  for (std::size_t i = 0; i < report.findings.size(); ++i)
+    notes.emplace_back(fmt::format("finding{}", i + 1), report.findings[i]);
   context.sink.conclude(analysis.name, status_name(report.status), report.message, notes);
   return report;
 }

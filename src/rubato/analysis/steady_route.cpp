@@ -2,7 +2,6 @@
 #include <rubato/integrate/steady/harmonic_balance.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
-#include <rubato/integrate/steady/time_marching.hpp>
 
 namespace rubato::analysis {
 namespace {
@@ -10,10 +9,10 @@ namespace {
 using integrate::SteadyRequest;
 using system::LocallyNonlinear;
 
-std::unique_ptr<integrate::SteadySolver> linear(const LocallyNonlinear& system, const SteadyRequest& request,
-                                                bool stuck) {
+std::unique_ptr<integrate::SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                const SteadyRequest& request, bool stuck) {
   return std::make_unique<integrate::LinearResponse>(
-      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request);
+      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request, route.linear);
 }
 
 std::unique_ptr<integrate::SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,
@@ -32,15 +31,19 @@ std::unique_ptr<integrate::SteadySolver> harmonic_balance(const SteadyRoute& rou
 
 std::unique_ptr<integrate::SteadySolver> time_marching(const SteadyRoute& route, const LocallyNonlinear& system,
                                                        const SteadyRequest& request) {
+  return std::make_unique<integrate::TimeMarchingSolver>(system, marching_options(route), request);
+}
+
+}  // namespace
+
+integrate::TimeMarchingOptions marching_options(const SteadyRoute& route) {
   integrate::TimeMarchingOptions options;
   options.method = route.method;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
   if (route.steps_per_period > 0) options.steps_per_period = static_cast<int>(route.steps_per_period);
   if (route.max_periods > 0) options.max_periods = static_cast<int>(route.max_periods);
-  return std::make_unique<integrate::TimeMarchingSolver>(system, options, request);
+  return options;
 }
-
-}  // namespace
 
 std::string route_name(SteadyRoute::Kind kind) {
   if (kind == SteadyRoute::Kind::harmonic_balance) return "harmonic_balance";
@@ -49,16 +52,16 @@ std::string route_name(SteadyRoute::Kind kind) {
 
 SteadySolvers steady_solvers(const SteadyRoute& route) {
   SteadySolvers solvers;
-  solvers.free = [](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return linear(system, request, false);
+  solvers.free = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, false);
   };
-  solvers.stuck = [](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return linear(system, request, true);
+  solvers.stuck = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, true);
   };
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
     if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);
-    if (system.slider_count() == 0) return linear(system, request, false);
+    if (system.slider_count() == 0) return linear(route, system, request, false);
     return route.kind == SteadyRoute::Kind::periodic ? periodic(route, system, request)
                                                      : harmonic_balance(route, system, request);
   };

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <rubato/integrate/method.hpp>
+#include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/integrate/steady/time_marching.hpp>
 #include <rubato/model/description.hpp>
 
 #include <functional>
@@ -15,14 +17,18 @@ struct SteadyRoute {
   using Kind = model::FrequencyResponseDescription::Route;
 
   Kind kind = Kind::periodic;
-  double tolerance = 0.0;     ///< relative; 0: the route's own
-  integrate::Method method;   ///< of time marching, as the two below
-  long steps_per_period = 0;  ///< 0: chosen by the error
-  long max_periods = 0;       ///< 0: the route's own
+  double tolerance = 0.0;              ///< relative; 0: the route's own
+  integrate::Method method;            ///< of time marching, as the two below
+  long steps_per_period = 0;           ///< 0: chosen by the error
+  long max_periods = 0;                ///< 0: the route's own
+  integrate::LinearSweep linear = {};  ///< by which way large models find their linear responses
 };
 
 /// As the study file calls it.
 std::string route_name(SteadyRoute::Kind kind);
+
+/// The options of time marching.
+integrate::TimeMarchingOptions marching_options(const SteadyRoute& route);
 
 /// Makes solvers of steady responses for one structure after another.
 struct SteadySolvers {

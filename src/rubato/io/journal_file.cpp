@@ -80,14 +80,14 @@ std::string fingerprint_of(const model::StudyDescription& study, const numerics:
     digest.take(study.model.matrices->stiffness);
     if (study.model.matrices->damping) digest.take(*study.model.matrices->damping);
   }
-  for (const auto& other : study.analyses) {
-    const auto* response = std::get_if<model::FrequencyResponseDescription>(&other.task);
-    if (!response) continue;
-    if (const auto* cases = std::get_if<model::CaseSweepDescription>(&response->sweep)) {
-      for (const auto& name : cases->names) digest.take(name);
-      digest.take(cases->values);
-    }
-  }
+  const auto take_cases = [&](const auto& task) {
+    if constexpr (requires { task.sweep; })
+      if (const auto* cases = std::get_if<model::CaseSweepDescription>(&task.sweep)) {
+        for (const auto& name : cases->names) digest.take(name);
+        digest.take(cases->values);
+      }
+  };
+  for (const auto& other : study.analyses) std::visit(take_cases, other.task);
   return fmt::format("{:016x}", digest.value());
 }
 

@@ -38,7 +38,13 @@ MethodDescription to_method(TomlReader& reader, const toml::node& node, const st
 
 std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& reader) {
   std::vector<Location> places;
-  const auto texts = reader.optional_texts("observe", &places);
+  std::optional<std::vector<std::string>> texts;
+  if (const toml::node* node = reader.node("observe"); node && !node->is_array()) {
+    places.emplace_back();
+    texts = {reader.name("observe", &places.front())};
+  } else {
+    texts = reader.optional_texts("observe", &places);
+  }
   if (!texts) return std::nullopt;
   std::vector<ObservationDescription> observations;
   for (std::size_t i = 0; i < texts->size(); ++i) {
@@ -141,8 +147,8 @@ ModesDescription read_modes(TomlReader& reader) {
 }  // namespace
 
 std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
-  const std::vector<std::string> known{"transient", "method_study", "modes", "frequency_response", "static"};
-  const std::vector<std::string> planned{"damper_curve"};
+  const std::vector<std::string> known{"transient",          "method_study", "modes",
+                                       "frequency_response", "damper_curve", "static"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -162,11 +168,6 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
         throw InvalidInput(reader.where("name"), fmt::format("two analyses are called \"{}\"; the first is on line {}",
                                                              analysis.name, other.where.line));
     const std::string type = reader.text("type");
-    if (std::find(planned.begin(), planned.end(), type) != planned.end())
-      throw InvalidInput(reader.where("type"),
-                         fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study, modes, frequency_response, static",
-                                     analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
@@ -174,6 +175,8 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
       analysis.task = read_modes(reader);
     else if (type == "frequency_response")
       analysis.task = read_frequency_response(reader, folder);
+    else if (type == "damper_curve")
+      analysis.task = read_damper_curve(reader, folder);
     else if (type == "static") {
       StaticDescription equilibrium = read_static(reader);
       equilibrium.observe = read_observe(reader);

@@ -22,10 +22,22 @@ std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const st
 /// The keys of type = "frequency_response".
 model::FrequencyResponseDescription read_frequency_response(TomlReader& reader, const std::filesystem::path& folder);
 
+/// The keys of type = "damper_curve".
+model::DamperCurveDescription read_damper_curve(TomlReader& reader, const std::filesystem::path& folder);
+
+/// A list of numbers, or { from, to, points, spacing }.
+model::ValuesDescription to_values(TomlReader& reader, const toml::node& node, const std::string& key);
+
+/// `sweep`: a grid, a list of cases or random samples of parameters.
+model::SweepDescription read_sweep(TomlReader& reader, const std::filesystem::path& folder);
+
+/// "angular_frequency" or "frequency", whichever is there: exactly one must be.
+std::string frequency_key(TomlReader& reader);
+
 /// A method's name, or a table of its name and parameters.
 model::MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key);
 
-/// `observe`: coordinates and differences, each once.
+/// `observe`: a coordinate or a difference, or a list of them, each once.
 std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReader& reader);
 
 /// A CSV file whose header names parameters and whose rows are numbers; `#` begins a comment.

@@ -53,20 +53,15 @@ void name_by_number(const std::vector<std::string>& names, model::ObservationDes
 void name_by_number(model::StudyDescription& study) {
   if (!study.model.matrices) return;
   const auto& names = study.model.matrices->names;
-  for (auto& analysis : study.analyses) {
-    if (auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
-      if (!transient->observe) continue;
-      for (auto& observation : *transient->observe) name_by_number(names, observation);
-    } else if (auto* study_of_methods = std::get_if<model::MethodStudyDescription>(&analysis.task)) {
-      if (study_of_methods->observe) name_by_number(names, *study_of_methods->observe);
-    } else if (auto* response = std::get_if<model::FrequencyResponseDescription>(&analysis.task)) {
-      if (!response->observe) continue;
-      for (auto& observation : *response->observe) name_by_number(names, observation);
-    } else if (auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
-      if (!equilibrium->observe) continue;
-      for (auto& observation : *equilibrium->observe) name_by_number(names, observation);
+  const auto name_all = [&](auto& task) {
+    if constexpr (requires { task.observe->begin(); }) {
+      if (!task.observe) return;
+      for (auto& observation : *task.observe) name_by_number(names, observation);
+    } else if (task.observe) {
+      name_by_number(names, *task.observe);
     }
-  }
+  };
+  for (auto& analysis : study.analyses) std::visit(name_all, analysis.task);
 }
 
 std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {

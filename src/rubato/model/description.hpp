@@ -319,10 +319,31 @@ struct ModesDescription {
   std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
 };
 
+struct DamperCurveDescription {
+  enum class Objective {
+    amplitude,   ///< the largest of the observed ones, over frequency; the optimum is its lowest value
+    dissipated,  ///< friction work of all sliders over a period; the optimum is its highest value
+  };
+
+  std::string parameter;
+  Location parameter_where;
+  ValuesDescription range;        ///< of the parameter
+  ValuesDescription frequencies;  ///< from and to [rad/s], or [Hz]; points, where given, are scanned for peaks
+  bool has_frequency_points = false;
+  bool frequencies_in_hertz = false;
+  std::string excitation;  ///< the parameter that takes them; empty: the one that the forces use
+  Location excitation_where;
+  SweepDescription sweep;  ///< of other parameters: a curve for each combination
+  Location sweep_where;
+  Objective objective = Objective::amplitude;
+  Location objective_where;
+  std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
+};
+
 struct AnalysisDescription {
   std::string name;
   std::variant<TransientDescription, MethodStudyDescription, ModesDescription, FrequencyResponseDescription,
-               StaticDescription>
+               DamperCurveDescription, StaticDescription>
       task;
   Location where;
 };

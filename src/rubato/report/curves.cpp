@@ -38,6 +38,11 @@ struct Reader {
   }
 };
 
+/// Of a damper curve.
+bool is_over_the_parameter(std::string_view table) {
+  return table.empty() || table == "peaks" || table == "linear" || table == "bands";
+}
+
 }  // namespace
 
 std::optional<CurveLayout> curve_layout(const TableSource& table, const Attributes& analysis) {
@@ -51,7 +56,7 @@ std::optional<CurveLayout> curve_layout(const TableSource& table, const Attribut
   };
   const std::string parameter = attribute(analysis, "parameter");
   std::optional<std::size_t> abscissa = index_of("time");
-  if (!abscissa && type == "damper_curve" && (table.name().empty() || table.name() == "peaks")) {
+  if (!abscissa && type == "damper_curve" && is_over_the_parameter(table.name())) {
     abscissa = index_of(parameter);
     if (!abscissa && !variables.empty() && variables[0].dimension.empty()) abscissa = 0;
   }

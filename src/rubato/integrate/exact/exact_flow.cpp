@@ -10,19 +10,20 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr Index largest_size = 300;  // dense products of every piece; beyond, a step method is faster by far
-constexpr double at_limit = 1e-13;   // relative distance of a force from its limit that is round-off of the location
-constexpr double at_rest = 1e-12;    // likewise of a term of u against its largest
+constexpr double at_limit = 1e-13;  // relative distance of a force from its limit that is round-off of the location
+constexpr double at_rest = 1e-14;   // likewise of a term of u against the largest of the displacements it is made of
+constexpr int most_order = 6;       // of the terms of u that are looked at
+constexpr double no_time = 1e-10;   // of a piece: events that are as near happen at once
 constexpr long most_without_time = 200;
 
 int sign(SliderState state) { return static_cast<int>(state); }
 
 void require_possible(const system::LocallyNonlinear& system) {
-  if (system.size() > largest_size)
+  if (system.size() > largest_exact)
     throw InvalidInput(
         fmt::format("the method exact is for up to {} coordinates, the model has {}; take "
                     "\"generalized_alpha\" with a small step",
-                    largest_size, system.size()));
+                    largest_exact, system.size()));
   for (const auto& term : system.loads().terms())
     if (const auto* formula = std::get_if<model::FormulaLaw>(&term.law))
       throw InvalidInput(
@@ -44,6 +45,7 @@ ExactFlow::ExactFlow(const system::LocallyNonlinear& system)
       states_(static_cast<std::size_t>(system.slider_count()), SliderState::stick),
       decided_(states_),
       critical_(states_.size(), false),
+      first_order_(states_.size(), 0),
       path_(TaylorPiece::degree + 1) {}
 
 void ExactFlow::set_excitation(const Excitation& excitation) {
@@ -51,8 +53,10 @@ void ExactFlow::set_excitation(const Excitation& excitation) {
   own_loads_ = false;
 }
 
-// Sliders at their limit are snapped to it, and stick or slip by the first term of u that is not round-off. Deciding
-// one changes later terms of the others only, so that the decision is repeated until it stands.
+// Sliders at their limit are snapped to it, and stick or slip by the first term of u that is not round-off. The states
+// change the third term and later ones only; deciding is repeated until it stands. Where all undecided sliders at once
+// do not settle, one at a time does, the first that must change: Murty's pivoting, which ends as the stiffness that
+// couples them is positive (K. G. Murty, Note on a Bard-type scheme for solving the complementarity problem, 1974).
 void ExactFlow::decide_states(system::State& state, double table_end) {
   const auto m = static_cast<Index>(states_.size());
   for (Index i = 0; i < m; ++i) {
@@ -65,27 +69,14 @@ void ExactFlow::decide_states(system::State& state, double table_end) {
     if (!critical_[k]) states_[k] = SliderState::stick;
     if (is_idle(i)) states_[k] = SliderState::slip_positive;
   }
-  for (Index round = 0; round < m + 3; ++round) {
+  for (Index round = 0; round < 6 * m + 6; ++round) {
     piece_.start(state, states_, table_end);
-    const double tau = piece_.max_length();
     bool stands = true;
-    for (Index i = 0; i < m; ++i) {
+    for (Index i = 0; i < m && (stands || round < m + 3); ++i) {
       const auto k = static_cast<std::size_t>(i);
+      first_order_[k] = 0;
       if (!critical_[k] || is_idle(i)) continue;
-      const double* u = piece_.relative_displacement(i);
-      double size = 0.0, power = 1.0;
-      for (int order = 0; order <= TaylorPiece::degree; ++order, power *= tau)
-        size = std::max(size, std::abs(u[order]) * power);
-      const double limit = piece_.limit(i);
-      size = std::max(size, limit / system_.sliders()[k].stiffness);
-      SliderState next = SliderState::stick;
-      power = tau;
-      for (int order = 1; order <= 6; ++order, power *= tau) {
-        if (!(std::abs(u[order]) * power > at_rest * size)) continue;
-        const bool outward = u[order] * state.slider_force[i] > 0.0;
-        if (outward) next = state.slider_force[i] > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
-        break;
-      }
+      const SliderState next = state_at_limit(i, state.slider_force[i]);
       if (next == states_[k]) continue;
       states_[k] = next;
       stands = false;
@@ -94,28 +85,41 @@ void ExactFlow::decide_states(system::State& state, double table_end) {
   }
 }
 
+SliderState ExactFlow::state_at_limit(Index i, double force) {
+  const auto k = static_cast<std::size_t>(i);
+  const auto u = piece_.relative_displacement(i);
+  const double tau = piece_.max_length(), negligible = at_rest * piece_.displacement_scale(i);
+  double power = tau;
+  int& order = first_order_[k];
+  for (order = 1; order <= most_order; ++order, power *= tau)
+    if (std::abs(u[static_cast<std::size_t>(order)]) * power > negligible) break;
+  if (order > most_order || !(u[static_cast<std::size_t>(order)] * force > 0.0)) return SliderState::stick;
+  return force > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
+}
+
 double ExactFlow::next_event(double length, Index& slider) {
   double first = -1.0;
   for (Index i = 0; i < static_cast<Index>(states_.size()); ++i) {
     if (is_idle(i)) continue;
     const auto& element = system_.sliders()[static_cast<std::size_t>(i)];
-    const double limit = piece_.limit(i);
-    const double* u = piece_.relative_displacement(i);
+    const double reach = first < 0.0 ? length : first;
+    const auto u = piece_.relative_displacement(i);
     const SliderState state = states_[static_cast<std::size_t>(i)];
-    const double reach = first < 0.0 ? length : first, tau = piece_.max_length();
+    // What was round-off when the state was decided is none of a motion beyond the edge now.
+    const auto order = static_cast<std::size_t>(first_order_[static_cast<std::size_t>(i)]);
     double s = -1.0;
-    if (state == SliderState::stick) {  // its force reaches a limit
-      for (std::size_t k = 0; k < path_.size(); ++k) path_[k] = element.stiffness * u[k];
-      path_[0] += piece_.offset(i);
-      // At the limit and, but for round-off, at rest: it has been decided that it moves inward.
-      const bool on_edge = std::abs(path_[0]) >= limit * (1.0 - 2.0 * at_limit);
-      if (on_edge && std::abs(path_[1]) * tau <= at_rest * limit) path_[1] = 0.0;
-      s = first_exit(path_, -limit, limit, reach);
+    if (state == SliderState::stick) {  // its force, in units of its spring, reaches a limit
+      const double slip = piece_.limit(i) / element.stiffness;
+      std::copy(u.begin(), u.end(), path_.begin());
+      path_[0] = order > 0 ? std::copysign(slip, piece_.offset(i) + element.stiffness * u[0])
+                           : u[0] + piece_.offset(i) / element.stiffness;
+      for (std::size_t k = 1; k < order; ++k) path_[k] = 0.0;
+      s = first_exit({path_.data(), u.size()}, -slip, slip, reach);
     } else {  // its slip comes to rest
-      path_.back() = 0.0;
-      for (std::size_t k = 0; k + 1 < path_.size(); ++k) path_[k] = sign(state) * static_cast<double>(k + 1) * u[k + 1];
-      if (std::abs(path_[0]) * tau <= at_rest * limit / element.stiffness) path_[0] = 0.0;
-      s = first_exit(path_, 0.0, HUGE_VAL, reach);
+      const double outward = sign(state);
+      for (std::size_t k = 0; k + 1 < u.size(); ++k) path_[k] = outward * static_cast<double>(k + 1) * u[k + 1];
+      for (std::size_t k = 1; k < order; ++k) path_[k - 1] = 0.0;
+      s = first_exit({path_.data(), u.size() - 1}, 0.0, HUGE_VAL, reach);
     }
     if (s < 0.0 || (first >= 0.0 && s >= first)) continue;
     first = s;
@@ -132,9 +136,15 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   if (own_loads_) breaks = system_.loads().breakpoints(state.t, t_end);
   std::size_t next_break = 0, next_sample = 0;
   long without_time = 0;
+  double progress = state.t;
   now_ = state;
-  // Where forces stand tells the states; the first decision sees all sliders.
-  for (std::size_t k = 0; k < states_.size(); ++k) states_[k] = SliderState::stick;
+  // Where forces and rates stand tells the likeliest states; the first decision sees all sliders.
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const auto i = static_cast<Index>(k);
+    const double force = state.slider_force[i];
+    const bool slips = std::abs(force) >= piece_.limit(i) && force * system_.relative_displacement(i, state.v) > 0.0;
+    states_[k] = !slips ? SliderState::stick : force > 0.0 ? SliderState::slip_positive : SliderState::slip_negative;
+  }
   const auto table_end = [&] { return next_break < breaks.size() ? breaks[next_break] : t_end; };
   decide_states(state, table_end());
 
@@ -144,7 +154,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     piece_.add_work(from, to, work.damper, work.load);
     for (std::size_t k = 0; k < states_.size(); ++k) {
       if (states_[k] == SliderState::stick) continue;
-      const std::span<const double> u(piece_.relative_displacement(static_cast<Index>(k)), TaylorPiece::degree + 1);
+      const auto u = piece_.relative_displacement(static_cast<Index>(k));
       work.slider += sign(states_[k]) * piece_.limit(static_cast<Index>(k)) * (polynomial(u, to) - polynomial(u, from));
     }
   };
@@ -175,7 +185,13 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     visitor.piece(piece_, state.t, length, states_);
     now_.t = end;
     piece_.evaluate(length, now_);
-    without_time = end > state.t + 1e-14 * std::abs(state.t) ? 0 : without_time + 1;
+    // Against what a piece may be long: near t = 0 any time is large beside t.
+    if (end > progress + no_time * piece_.max_length()) {
+      progress = end;
+      without_time = 0;
+    } else {
+      ++without_time;
+    }
     std::swap(state, now_);
     if (!std::isfinite(state.v.sum()) || !std::isfinite(state.q.sum())) {
       report.end = ExactEnd::not_finite;
@@ -183,7 +199,9 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     }
     if (next_break < breaks.size() && state.t >= breaks[next_break]) ++next_break;
     if (event < 0.0) {
+      if (state.t >= t_end && next_sample >= samples.size()) break;
       piece_.start(state, states_, table_end());
+      std::fill(first_order_.begin(), first_order_.end(), 0);
       if (state.t >= t_end) continue;
       if (next_break > 0 && state.t == breaks[next_break - 1]) decide_states(state, table_end());
       continue;

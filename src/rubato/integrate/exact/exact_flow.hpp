@@ -7,6 +7,9 @@
 
 namespace rubato::integrate {
 
+/// Coordinates that the exact flow takes: every piece costs dense products, and beyond other ways are faster by far.
+inline constexpr Index largest_exact = 300;
+
 /// A slider that changes its state.
 struct Transition {
   double t = 0.0;  ///< [s]
@@ -70,6 +73,8 @@ class ExactFlow {
 
  private:
   void decide_states(system::State& state, double table_end);
+  /// Of a slider at its limit, from the piece just started; keeps the order of the term that decides.
+  SliderState state_at_limit(Index slider, double force);
   bool is_idle(Index i) const { return piece_.limit(i) == 0.0; }
   double next_event(double length, Index& slider);
 
@@ -77,6 +82,9 @@ class ExactFlow {
   TaylorPiece piece_;
   std::vector<SliderState> states_, decided_;
   std::vector<bool> critical_;
+  /// The first term of u that is not round-off, of a slider that starts the piece at its limit; else 0. The search for
+  /// transitions goes by it too: were it to see what the decision neglects, both would contradict each other forever.
+  std::vector<int> first_order_;
   std::vector<double> path_;  ///< coefficients of a force, or of a rate of slip
   system::State now_;
   bool own_loads_ = true;

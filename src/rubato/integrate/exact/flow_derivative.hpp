@@ -13,27 +13,27 @@ namespace rubato::integrate {
 ///   dq' = dv,   M dv' = -C dv - K dq - B dfc,   dfc' = kT du' while a slider sticks, dfc = 0 while it slips.
 ///
 /// The slider force, and so the acceleration, is continuous at a transition: there is no jump to account for, but that
-/// a force at its limit does not move with the start any more. For Newton's matrix: exact to 1e-7 of its size.
+/// a force at its limit does not move with the start any more. For Newton's matrix: exact to 1e-13 of its size for up
+/// to sixteen unknowns, to 1e-7 for more.
 class FlowDerivative {
  public:
   explicit FlowDerivative(const system::LocallyNonlinear& system);
 
   void set_identity();
-  /// Goes on over a piece of a length [s], at most TaylorPiece::max_length(), with its sliders in the given states.
-  void pass(double length, const std::vector<SliderState>& states);
-  const Matrix& matrix() const { return derivative_; }
+  /// Goes on over a piece of a length [s], with its sliders in the given states.
+  /// @param turn  length * the fastest rate of the piece, at most TaylorPiece::reach [-]
+  void pass(double length, double turn, const std::vector<SliderState>& states);
+  auto matrix() const { return derivative_.topRows(size_); }
 
  private:
-  static constexpr int degree = 14;  // reach^15/15! = 3e-8
-  template <int N>
-  void multiply();
   const Matrix& powers_of(const std::vector<SliderState>& states);
 
   const system::LocallyNonlinear& system_;
-  Index n_, m_, size_;
+  Index n_, m_, size_, rows_;  // rows of matrices, with those that fill vectors of four
+  int degree_;
   Matrix flow_, joins_;                               // (q, v)' without sliders; M^-1 B
   std::map<std::vector<SliderState>, Matrix> cache_;  // A^k/k! by columns of k
-  Matrix derivative_, propagator_, product_;
+  Matrix derivative_, propagator_, product_;          // [rows x size]
   Vector length_powers_;
 };
 

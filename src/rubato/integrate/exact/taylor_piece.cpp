@@ -1,4 +1,4 @@
-#include <rubato/integrate/exact/first_exit.hpp>
+#include <rubato/integrate/exact/series_length.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/numerics/gauss_legendre.hpp>
 
@@ -46,6 +46,18 @@ constexpr std::array<double, TaylorPiece::degree + 1> inverse = [] {
   return table;
 }();
 
+// x^k/k! that is neglected: reach^25/25!, beyond round-off.
+const SeriesLength& series() {
+  static const SeriesLength length([] {
+    double term = 1.0;
+    for (int k = 1; k <= TaylorPiece::degree + 1; ++k) term *= TaylorPiece::reach / k;
+    return term * (1.0 + 1e-12);
+  }());
+  return length;
+}
+
+constexpr Index fewest_terms = 8;  // the decisions of sliders at their limits look at the first seven
+
 double largest_eigenvalue(const Matrix& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().cwiseAbs().maxCoeff();
 }
@@ -83,6 +95,7 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
     for (std::size_t k = 0; k < terms[i].rows.size(); ++k)
       pattern_(terms[i].rows[k], static_cast<Index>(i)) += terms[i].weights[k];
   }
+  work_q_.resize(n_);
   set_pattern();
 
   forcing_.resize(n_, degree);
@@ -90,19 +103,30 @@ TaylorPiece::TaylorPiece(const system::LocallyNonlinear& system)
   v_.resize(n_, degree + 1);
   u_.resize(degree + 1, m_);
   offset_.resize(m_);
-  work_q_.resize(n_);
   work_v_.resize(n_);
   work_product_.resize(n_);
 }
 
+// cos(w (t + s) + phase) = sum over k of w^k s^k/k! times cos, -sin, -cos, sin of the angle at t.
 void TaylorPiece::set_pattern() {
-  terms_ = static_cast<Index>(loads_.size());
+  const auto count = static_cast<Index>(loads_.size());
   largest_load_frequency_ = 0.0;
   for (const Load& load : loads_)
     largest_load_frequency_ = std::max(largest_load_frequency_, std::abs(load.angular_frequency));
-  load_pattern_.resize(n_, terms_);
-  load_pattern_.noalias() = inverse_mass_.lazyProduct(pattern_);
-  load_.resize(degree + 1, terms_);
+  load_length_ = reach / std::max(largest_load_frequency_, 1e-300);
+  growth_.setZero(n_ * degree, 2 * count);
+  load_start_.resize(2 * count);
+  for (Index i = 0; i < count; ++i) {
+    const Load& load = loads_[static_cast<std::size_t>(i)];
+    const auto pattern = inverse_mass_.lazyProduct(pattern_.col(i));
+    work_q_.noalias() = pattern;
+    double factor = 1.0;
+    for (Index k = 0; k < (load.table ? 2 : degree); ++k) {
+      const bool by_sine = k % 2 == 1, negative = !load.table && (k % 4 == 1 || k % 4 == 2);
+      growth_.col(2 * i + by_sine).segment(k * n_, n_) = (negative ? -factor : factor) * work_q_;
+      if (!load.table) factor *= load.angular_frequency * inverse[static_cast<std::size_t>(k)];
+    }
+  }
 }
 
 // A complex amplitude a is a_r cos(k w t) + a_i cos(k w t + pi/2).
@@ -128,14 +152,17 @@ void TaylorPiece::set_excitation(const Excitation& excitation) {
 }
 
 const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<SliderState>& states) {
-  std::vector<SliderState> key = states;  // which way a slider slips changes no coefficient
-  for (SliderState& state : key)
+  // Which way a slider slips changes no coefficient.
+  const auto same = [](SliderState a, SliderState b) { return (a == SliderState::stick) == (b == SliderState::stick); };
+  if (operators_ && std::equal(states.begin(), states.end(), key_.begin(), same)) return *operators_;
+  key_ = states;
+  for (SliderState& state : key_)
     if (state != SliderState::stick) state = SliderState::slip_positive;
-  const auto known = cache_.find(key);
+  const auto known = cache_.find(key_);
   if (known != cache_.end()) return known->second;
   Matrix stiffness(system_.stiffness());
   for (Index i = 0; i < m_; ++i) {
-    if (key[static_cast<std::size_t>(i)] != SliderState::stick) continue;
+    if (key_[static_cast<std::size_t>(i)] != SliderState::stick) continue;
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
     Vector join = Vector::Zero(n_);
     if (slider.first != ground) join[slider.first] += 1.0;
@@ -144,14 +171,17 @@ const TaylorPiece::Operators& TaylorPiece::operators_of(const std::vector<Slider
   }
   // |eigenvalue| <= the positive root of x^2 = c x + k with the norms of C and K in the metric of M.
   const double k = largest_eigenvalue(inverse_root_ * stiffness * inverse_root_.transpose());
-  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness),
-                      0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k))};
-  return cache_.emplace(std::move(key), std::move(operators)).first->second;
+  const double rate = 0.5 * (damping_norm_ + std::sqrt(damping_norm_ * damping_norm_ + 4.0 * k));
+  Operators operators{inverse_root_.transpose() * (inverse_root_ * stiffness), rate, reach / std::max(rate, 1e-300)};
+  return cache_.emplace(key_, std::move(operators)).first->second;
 }
 
-void TaylorPiece::start(const system::State& state, const std::vector<SliderState>& states, double table_end) {
+void TaylorPiece::start(const system::State& state, const std::vector<SliderState>& states, double end) {
   operators_ = &operators_of(states);
-  length_ = reach / std::max({operators_->rate, largest_load_frequency_, 1e-300});
+  start_ = state.t;
+  rate_ = std::max(operators_->rate, largest_load_frequency_);
+  length_ = std::min(operators_->length, load_length_);
+  terms_ = std::max(fewest_terms, terms_of(rate_ * (end - state.t)));
   states_ = states;
   q_.col(0) = state.q;
   v_.col(0) = state.v;
@@ -160,70 +190,111 @@ void TaylorPiece::start(const system::State& state, const std::vector<SliderStat
     const bool sticks = states[static_cast<std::size_t>(i)] == SliderState::stick;
     offset_[i] = state.slider_force[i] - (sticks ? slider.stiffness * system_.relative_displacement(i, state.q) : 0.0);
   }
-  for (Index i = 0; i < terms_; ++i) {
-    const Load& law = loads_[static_cast<std::size_t>(i)];
-    if (!law.table) {
-      const double w = law.angular_frequency, angle = w * state.t + law.phase;
-      double cosine = std::cos(angle), sine = std::sin(angle);
-      for (int k = 0; k <= degree; ++k) {
-        load_(k, i) = cosine;
-        const double factor = w * inverse[static_cast<std::size_t>(k)], next = -factor * sine;
-        sine = factor * cosine;
-        cosine = next;
-      }
-    } else {
-      load_.col(i).setZero();
-      load_(0, i) = model::value(*law.table, state.t, model::Side::right);
-      if (table_end > state.t)
-        load_(1, i) = (model::value(*law.table, table_end, model::Side::left) - load_(0, i)) / (table_end - state.t);
-    }
-  }
-  if (terms_ == 0) forcing_.setZero();
-  for (Index i = 0; i < terms_; ++i) {
-    const auto law = load_.col(i).head(degree).transpose();
-    if (i == 0)
-      forcing_.noalias() = load_pattern_.col(i) * law;
-    else
-      forcing_.noalias() += load_pattern_.col(i) * law;
-  }
-  forcing_.col(0).noalias() -= joins_.lazyProduct(offset_);
+  set_loads(state.t, end);
   with_size(n_, [&](auto size) { fill_coefficients<decltype(size)::value>(); });
   for (Index i = 0; i < m_; ++i) {
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
-    u_.col(i).setZero();
-    if (slider.first != ground) u_.col(i) += q_.row(slider.first).transpose();
-    if (slider.second != ground) u_.col(i) -= q_.row(slider.second).transpose();
+    double* u = u_.col(i).data();
+    const double *first = slider.first == ground ? nullptr : q_.data() + slider.first,
+                 *second = slider.second == ground ? nullptr : q_.data() + slider.second;
+    for (Index k = 0; k < terms_; ++k) u[k] = (first ? first[k * n_] : 0.0) - (second ? second[k * n_] : 0.0);
   }
+}
+
+void TaylorPiece::set_loads(double t, double end) {
+  auto forcing = forcing_.reshaped().head(n_ * (terms_ - 1));
+  forcing.setZero();
+  for (Index i = 0; i < static_cast<Index>(loads_.size()); ++i) {
+    const Load& load = loads_[static_cast<std::size_t>(i)];
+    double &first = load_start_[2 * i], &second = load_start_[2 * i + 1];
+    if (!load.table) {
+      const double angle = load.angular_frequency * t + load.phase;
+      first = std::cos(angle);
+      second = std::sin(angle);
+    } else {
+      first = model::value(*load.table, t, model::Side::right);
+      second = end > t ? (model::value(*load.table, end, model::Side::left) - first) / (end - t) : 0.0;
+    }
+    forcing += first * growth_.col(2 * i).head(forcing.size()) + second * growth_.col(2 * i + 1).head(forcing.size());
+  }
+  forcing_.col(0).noalias() -= joins_.lazyProduct(offset_);
+}
+
+double TaylorPiece::load_value(Index i, double s) const {
+  const Load& load = loads_[static_cast<std::size_t>(i)];
+  return load.table ? load_start_[2 * i] + s * load_start_[2 * i + 1]
+                    : std::cos(load.angular_frequency * (start_ + s) + load.phase);
 }
 
 template <int N>
 void TaylorPiece::fill_coefficients() {
   using Column = Eigen::Matrix<double, N, 1>;
-  const Eigen::Map<const Eigen::Matrix<double, N, N>> stiffness(operators_->stiffness.data(), n_, n_),
-      damping(damping_.data(), n_, n_);
-  for (int k = 0; k < degree; ++k) {
-    const Eigen::Map<const Column> q(q_.col(k).data(), n_), v(v_.col(k).data(), n_),
-        forcing(forcing_.col(k).data(), n_);
-    Eigen::Map<Column> next_q(q_.col(k + 1).data(), n_), next_v(v_.col(k + 1).data(), n_);
+  using Square = Eigen::Matrix<double, N, N>;
+  const Eigen::Map<const Square> stiffness(operators_->stiffness.data(), n_, n_), damping(damping_.data(), n_, n_);
+  for (Index k = 0; k + 1 < terms_; ++k) {
+    const Eigen::Map<const Column> q(q_.data() + k * n_, n_), v(v_.data() + k * n_, n_),
+        forcing(forcing_.data() + k * n_, n_);
+    Eigen::Map<Column> next_q(q_.data() + (k + 1) * n_, n_), next_v(v_.data() + (k + 1) * n_, n_);
     const double factor = inverse[static_cast<std::size_t>(k)];
-    next_v = forcing;
-    next_v.noalias() -= damping * v;
-    next_v.noalias() -= stiffness * q;
-    next_v *= factor;
+    if constexpr (N != Eigen::Dynamic && N <= 3) {  // nothing but two operations from one velocity to the next
+      const Square scaled_stiffness = factor * stiffness, scaled_damping = factor * damping;
+      const Column elastic = factor * forcing - scaled_stiffness.lazyProduct(q);
+      next_v = elastic - scaled_damping.lazyProduct(v);
+    } else if constexpr (N != Eigen::Dynamic) {
+      const Column elastic = stiffness.lazyProduct(q), viscous = damping.lazyProduct(v);
+      next_v = factor * ((forcing - elastic) - viscous);
+    } else {
+      next_v = forcing;
+      next_v.noalias() -= damping * v;
+      next_v.noalias() -= stiffness * q;
+      next_v *= factor;
+    }
     next_q = factor * v;
   }
 }
 
+// Even and odd terms apart: their recurrences do not wait for each other.
 template <int N>
 void TaylorPiece::horner(double s, double* q_out, double* v_out) const {
   using Column = Eigen::Matrix<double, N, 1>;
   Eigen::Map<Column> q(q_out, n_), v(v_out, n_);
-  q = Eigen::Map<const Column>(q_.col(degree).data(), n_);
-  v = Eigen::Map<const Column>(v_.col(degree).data(), n_);
-  for (int k = degree - 1; k >= 0; --k) {
-    q = s * q + Eigen::Map<const Column>(q_.col(k).data(), n_);
-    v = s * v + Eigen::Map<const Column>(v_.col(k).data(), n_);
+  const auto column = [this](const Matrix& c, Index k) { return Eigen::Map<const Column>(c.data() + k * n_, n_); };
+  if constexpr (N != Eigen::Dynamic) {
+    const double square = s * s;
+    Index k = terms_ - 1;
+    Column q_odd = Column::Zero(n_), v_odd = q_odd, q_even = q_odd, v_even = q_odd;
+    if (k % 2 == 0) {
+      q_even = column(q_, k);
+      v_even = column(v_, k);
+      --k;
+    }
+    for (; k > 0; k -= 2) {
+      q_odd = square * q_odd + column(q_, k);
+      v_odd = square * v_odd + column(v_, k);
+      q_even = square * q_even + column(q_, k - 1);
+      v_even = square * v_even + column(v_, k - 1);
+    }
+    q = q_even + s * q_odd;
+    v = v_even + s * v_odd;
+  } else {
+    q = column(q_, terms_ - 1);
+    v = column(v_, terms_ - 1);
+    for (Index k = terms_ - 1; k-- > 0;) {
+      q = s * q + column(q_, k);
+      v = s * v + column(v_, k);
+    }
   }
+}
+
+Index TaylorPiece::terms_of(double turn) { return series().terms(turn, degree + 1); }
+
+double TaylorPiece::displacement_scale(Index slider) const {
+  const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
+  double scale = 0.0, power = 1.0;
+  for (Index k = 0; k < terms_; ++k, power *= length_)
+    for (const Index row : {element.first, element.second})
+      if (row != ground) scale = std::max(scale, std::abs(q_(row, k)) * power);
+  return scale;
 }
 
 void TaylorPiece::evaluate(double s, Vector& q, Vector& v) const {
@@ -248,8 +319,7 @@ void TaylorPiece::add_work(double from, double to, double& damper, double& load)
     evaluate(s, work_q_, work_v_);
     work_product_.noalias() = dense_damping_ * work_v_;
     damper += weight * work_v_.dot(work_product_);
-    for (Index j = 0; j < terms_; ++j)
-      load += weight * polynomial({load_.col(j).data(), degree + 1}, s) * pattern_.col(j).dot(work_v_);
+    for (Index j = 0; j < pattern_.cols(); ++j) load += weight * load_value(j, s) * pattern_.col(j).dot(work_v_);
   }
 }
 

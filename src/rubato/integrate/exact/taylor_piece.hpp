@@ -4,6 +4,7 @@
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <map>
+#include <span>
 #include <vector>
 
 namespace rubato::integrate {
@@ -33,23 +34,35 @@ class TaylorPiece {
   /// mu N of a slider [N].
   double limit(Index slider) const { return limits_[slider]; }
 
-  /// Makes the piece that starts at a state.
+  /// Makes the piece that starts at a state, to be used over at most max_length() and not beyond `end`: where that is
+  /// near, fewer terms do.
   /// @param states  of the sliders [m]
-  /// @param table_end  a time to which every table is linear from state.t on [s]
-  void start(const system::State& state, const std::vector<SliderState>& states, double table_end);
+  /// @param end     a time to which every table is linear from state.t on [s]
+  void start(const system::State& state, const std::vector<SliderState>& states, double end);
 
-  /// How far the polynomial is exact [s].
+  /// How far the polynomial is exact, but for `end` [s].
   double max_length() const { return length_; }
+  /// A bound of the fastest rate of all that moves [1/s].
+  double rate() const { return rate_; }
+  /// How many terms are exact to round-off over length * rate.
+  static Index terms_of(double turn);
+  /// Of the polynomials: degree + 1, or fewer.
+  Index terms() const { return terms_; }
 
   /// q and v at s after the start, and the slider forces there.
   void evaluate(double s, system::State& state) const;
   void evaluate(double s, Vector& q, Vector& v) const;
 
-  /// Coefficients of the displacements and velocities, by columns of degree [n x degree + 1].
+  /// Coefficients of the displacements and velocities, the first terms() columns [n x degree + 1].
   const Matrix& displacements() const { return q_; }
   const Matrix& velocities() const { return v_; }
   /// Coefficients of u = x_first - x_second of a slider.
-  const double* relative_displacement(Index slider) const { return u_.col(slider).data(); }
+  std::span<const double> relative_displacement(Index slider) const {
+    return {u_.col(slider).data(), static_cast<std::size_t>(terms_)};
+  }
+  /// The largest term over max_length() of the displacements that u is the difference of: u is known to round-off of it
+  /// [m].
+  double displacement_scale(Index slider) const;
   /// The part of a slider's force that does not move with u: fc = kT u + offset while it sticks, fc = offset otherwise.
   double offset(Index slider) const { return offset_[slider]; }
 
@@ -61,12 +74,15 @@ class TaylorPiece {
   struct Operators {
     Matrix stiffness;  // M^-1 (K + stuck)
     double rate;       // a bound of |eigenvalues|
+    double length;     // reach / rate
   };
   struct Load {
     double angular_frequency = 0.0, phase = 0.0;
     const model::TableLaw* table = nullptr;  // instead of a harmonic law
   };
   void set_pattern();
+  void set_loads(double t, double end);
+  double load_value(Index load, double s) const;
   template <int N>
   void fill_coefficients();
   template <int N>
@@ -74,18 +90,23 @@ class TaylorPiece {
   const Operators& operators_of(const std::vector<SliderState>& states);
 
   const system::LocallyNonlinear& system_;
-  Index n_, m_, terms_ = 0;
+  Index n_, m_, terms_ = degree + 1;
   std::vector<Load> loads_;
   Vector limits_;
-  Matrix inverse_mass_, damping_, load_pattern_, joins_;  // M^-1 C, M^-1 P, M^-1 B
-  Matrix dense_damping_, inverse_root_;                   // C; L^-1 of M = L L^T
-  Matrix pattern_;
+  Matrix inverse_mass_, damping_, joins_;  // M^-1 C, M^-1 B
+  Matrix dense_damping_, inverse_root_;    // C; L^-1 of M = L L^T
+  Matrix pattern_;                         // P: of the coordinates, by columns of load
   std::map<std::vector<SliderState>, Operators> cache_;
+  std::vector<SliderState> key_;
   const Operators* operators_ = nullptr;
-  double length_ = 0.0;
+  double length_ = 0.0, load_length_ = 0.0, rate_ = 0.0, start_ = 0.0;
   std::vector<SliderState> states_;
-  Matrix forcing_;           // M^-1 (P l_k - B c), by columns of degree
-  Matrix q_, v_, u_, load_;  // coefficients by columns of degree; u and loads by columns of slider and term
+  // What a load's value and rate of turn, cos and sin of its angle, make of M^-1 P l, by columns of degree in each
+  // column; of a table, its value and slope. [n degree x 2 loads]
+  Matrix growth_;
+  Vector load_start_;  // these, at the start
+  Matrix forcing_;     // M^-1 (P l_k - B c), by columns of degree
+  Matrix q_, v_, u_;   // coefficients by columns of degree; u by columns of slider
   Vector offset_;
   mutable Vector work_q_, work_v_, work_product_;
   double largest_load_frequency_ = 0.0, damping_norm_ = 0.0;

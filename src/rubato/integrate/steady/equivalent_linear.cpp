@@ -42,18 +42,28 @@ ComplexMatrix dynamic_stiffness(const system::LocallyNonlinear& system, double w
 
 }  // namespace
 
-bool is_at_undamped_resonance(const system::LocallyNonlinear& system, const Excitation& excitation,
-                              const std::vector<bool>& sticks) {
-  ComplexVector stiffness = ComplexVector::Zero(system.slider_count());
-  for (Index i = 0; i < system.slider_count(); ++i)
-    if (sticks[static_cast<std::size_t>(i)]) stiffness[i] = system.sliders()[static_cast<std::size_t>(i)].stiffness;
+bool is_driven_beyond_friction(const system::LocallyNonlinear& system, const Excitation& excitation) {
+  constexpr double round_off = 1e-13;
+  const ComplexVector none = ComplexVector::Zero(system.slider_count());
   return std::any_of(excitation.harmonics.begin(), excitation.harmonics.end(), [&](const LoadHarmonic& load) {
     const double w = load.order * excitation.angular_frequency;
     // Against the terms that cancel at a resonance, not against what is left of them.
-    const ComplexMatrix dynamic = dynamic_stiffness(system, w, stiffness);
     const double terms = Matrix(system.stiffness()).norm() + w * w * Matrix(system.mass()).norm();
-    const Eigen::JacobiSVD<ComplexMatrix> values(dynamic);
-    return values.singularValues().minCoeff() < 1e-13 * terms && load.amplitude.norm() > 0.0;
+    const Eigen::JacobiSVD<ComplexMatrix> values(dynamic_stiffness(system, w, none), Eigen::ComputeFullV);
+    for (Index k = 0; k < values.singularValues().size(); ++k) {
+      if (values.singularValues()[k] >= round_off * terms) continue;
+      const ComplexVector shape = values.matrixV().col(k);
+      const double given = std::numbers::pi * std::abs((shape.transpose() * load.amplitude)(0));
+      double taken = 0.0;
+      for (Index i = 0; i < system.slider_count(); ++i) {
+        const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
+        const Complex u = (slider.first == ground ? Complex(0.0) : shape[slider.first]) -
+                          (slider.second == ground ? Complex(0.0) : shape[slider.second]);
+        taken += 4.0 * std::abs(u) * excitation.limits[i];
+      }
+      if (given > round_off * std::numbers::pi * load.amplitude.norm() && given >= taken) return true;
+    }
+    return false;
   });
 }
 

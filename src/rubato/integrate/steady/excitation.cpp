@@ -22,7 +22,7 @@ int order_over(double frequency, double fundamental) {
              : 0;
 }
 
-double fundamental_of(const std::vector<double>& frequencies) {
+std::optional<double> common_fundamental(const std::vector<double>& frequencies) {
   // The smallest divided by 1, 2, 3, ...
   const double lowest = *std::min_element(frequencies.begin(), frequencies.end());
   for (int divisor = 1; divisor <= most_harmonics; ++divisor) {
@@ -31,10 +31,16 @@ double fundamental_of(const std::vector<double>& frequencies) {
                     [&](double frequency) { return order_over(frequency, candidate) > 0; }))
       return candidate;
   }
+  return std::nullopt;
+}
+
+double fundamental_of(const std::vector<double>& frequencies) {
+  if (const auto found = common_fundamental(frequencies)) return *found;
   throw InvalidInput(fmt::format(
       "the forces have no common period: their angular frequencies ({:.6g} to {:.6g} rad/s) are no multiples of one "
       "fundamental up to its harmonic {}; choose commensurate frequencies, or solver = \"time_marching\"",
-      lowest, *std::max_element(frequencies.begin(), frequencies.end()), most_harmonics));
+      *std::min_element(frequencies.begin(), frequencies.end()),
+      *std::max_element(frequencies.begin(), frequencies.end()), most_harmonics));
 }
 
 double Excitation::period() const { return 2.0 * std::numbers::pi / angular_frequency; }

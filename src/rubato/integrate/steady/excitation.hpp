@@ -4,6 +4,7 @@
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace rubato::integrate {
@@ -32,8 +33,11 @@ struct Excitation {
   bool is_half_wave_symmetric() const;
 };
 
-/// The largest frequency of which all the given ones (> 0) are multiples, up to its 64th, to 1e-10 relative. Throws
-/// InvalidInput where there is none.
+/// The largest frequency of which all the given ones (> 0) are multiples, up to its 64th, to 1e-10 relative. Nothing
+/// where there is none: the loads have no common period.
+std::optional<double> common_fundamental(const std::vector<double>& frequencies);
+
+/// The same; throws InvalidInput where there is none.
 double fundamental_of(const std::vector<double>& frequencies);
 
 /// The order of a frequency over a fundamental, or 0 where it is no multiple up to the 64th.

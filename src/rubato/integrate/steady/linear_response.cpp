@@ -50,6 +50,10 @@ LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest
   return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), true), std::move(request), sweep};
 }
 
+void LinearResponse::forget() {
+  if (modal_) modal_->forget();
+}
+
 void LinearResponse::solve(const Excitation& excitation, SteadyStart, SteadyResponse& response) {
   response = {};
   omega_ = excitation.angular_frequency;

@@ -35,7 +35,7 @@ class LinearResponse final : public SteadySolver {
 
   void solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
   Waveform waveform(int points) const override;
-  void forget() override {}
+  void forget() override;
 
   /// x_0 [n] and x_k of each order of the loads, at the point solved last.
   const Vector& mean() const { return mean_; }

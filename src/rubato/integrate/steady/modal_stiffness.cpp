@@ -48,6 +48,7 @@ struct ModalStiffness::Workspace {
     }
     basis.resize(mass.rows(), 0);
     for (Index j = 0; j < shapes.cols(); ++j) add(shapes.col(j));
+    modes_in_basis = basis.cols();
     is_usable = true;
   }
 
@@ -81,6 +82,12 @@ struct ModalStiffness::Workspace {
     extend(reduced_stiffness, stiffness);
     extend(reduced_mass, mass);
     extend(reduced_damping, damping);
+  }
+
+  void keep_only_modes() {
+    basis.conservativeResize(Eigen::NoChange, modes_in_basis);
+    for (Matrix* reduced : {&reduced_stiffness, &reduced_mass, &reduced_damping})
+      reduced->conservativeResize(modes_in_basis, modes_in_basis);
   }
 
   ComplexVector in_basis(const Matrix& columns, const ComplexVector& y) const {
@@ -121,6 +128,7 @@ struct ModalStiffness::Workspace {
   Vector squares, ratios;
   Eigen::SimplicialLDLT<SparseMatrix> factor;
   Matrix basis, reduced_stiffness, reduced_mass, reduced_damping;
+  Index modes_in_basis = 0;
 };
 
 ModalStiffness::ModalStiffness(const system::LocallyNonlinear& system, const StuckSliders& stuck, double highest,
@@ -132,6 +140,8 @@ ModalStiffness& ModalStiffness::operator=(ModalStiffness&&) noexcept = default;
 
 bool ModalStiffness::is_usable() const { return work_->is_usable; }
 Index ModalStiffness::mode_count() const { return work_->shapes.cols(); }
+void ModalStiffness::forget() { work_->keep_only_modes(); }
+
 Index ModalStiffness::basis_size() const { return work_->basis.cols(); }
 
 std::optional<StiffnessSolution> ModalStiffness::solve(double angular_frequency, const ComplexVector& force,

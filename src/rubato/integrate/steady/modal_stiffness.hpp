@@ -18,7 +18,8 @@ namespace rubato::integrate {
 /// vectors: Dickens, Nakagawa and Wittbrodt 1997; enriched where the error says so). s is 0, or positive where K is
 /// singular.
 ///
-/// A workspace: one a thread. What it answers depends, below the tolerance, on what it was asked before.
+/// A workspace: one a thread. What it answers depends, below the tolerance, on what it was asked since it was made or
+/// told to forget.
 class ModalStiffness {
  public:
   /// @param highest    of the frequencies [rad/s], > 0
@@ -32,6 +33,8 @@ class ModalStiffness {
   bool is_usable() const;
   Index mode_count() const;
   Index basis_size() const;
+  /// Leaves the modes alone in the basis.
+  void forget();
 
   /// Nothing where the frequency is beyond the highest, or the tolerance was not reached: near a resonance without
   /// damping. `uncertainty` is the estimate of the error, z.

@@ -10,17 +10,30 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr int nodes = 12;  // exact to round-off over the longest piece, for harmonics that turn by up to 3 rad in it
-constexpr double turn = 3.0;
+// Exact to round-off for what turns by z rad: z^20 (10!)^4/(21 (20!)^3) = 5e-17 at 5, the products of displacements
+// that turn by TaylorPiece::reach with harmonics that turn by `most_turn`.
+constexpr int nodes = 10;
+constexpr double most_turn = 3.0;
 using Nodes = Eigen::Array<double, nodes, 1>;
 
-// The number of terms of a piece that matter, if a share x / reach of its longest length is used: x^k/k! below
-// round-off, and two more for the second derivative.
-Index terms_of(double x) {
-  Index k = 1;
-  double term = x;
-  while (k < TaylorPiece::degree - 2 && term > 1e-18) term *= x / static_cast<double>(++k);
-  return std::min<Index>(k + 3, TaylorPiece::degree + 1);
+// cos(k x) and sin(k x) of the nodes about the middle of an interval, which lie symmetrically, to round-off up to x of
+// half of most_turn: terms to x^23/23!.
+void turn_by(double x, const Nodes& offset, Nodes& cosine, Nodes& sine) {
+  using Half = Eigen::Array<double, nodes / 2, 1>;
+  static constexpr auto inverse = [] {
+    std::array<double, 24> table{};
+    for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k * (k + 1));
+    return table;
+  }();
+  const Half angle = x * offset.head<nodes / 2>(), square = angle * angle;
+  Half even = Half::Ones(), odd = even;
+  for (std::size_t k = 22; k > 0; k -= 2) {
+    even = 1.0 - even * (square * inverse[k - 1]);
+    odd = 1.0 - odd * (square * inverse[k]);
+  }
+  odd *= angle;
+  cosine << even, even.reverse();
+  sine << odd, -odd.reverse();
 }
 
 struct Range {
@@ -44,15 +57,15 @@ void Orbit::add(const TaylorPiece& piece, double start, double length, const std
   Piece& kept = pieces_[count_++];
   kept.start = start;
   kept.length = length;
-  kept.terms = terms_of(TaylorPiece::reach * std::min(length / piece.max_length(), 1.0));
+  kept.turn = piece.rate() * length;
+  kept.terms = std::min(piece.terms(), TaylorPiece::terms_of(kept.turn) + 2);  // two more for the second derivative
   kept.states = states;
   const Index m = system_.slider_count();
-  kept.q = piece.displacements().leftCols(kept.terms);
-  kept.u.resize(kept.terms, m);
+  kept.q.resize(system_.size(), TaylorPiece::degree + 1);
+  kept.q.leftCols(kept.terms) = piece.displacements().leftCols(kept.terms);
   kept.offset.resize(m);
   kept.limit.resize(m);
   for (Index i = 0; i < m; ++i) {
-    kept.u.col(i) = Eigen::Map<const Vector>(piece.relative_displacement(i), kept.terms);
     kept.offset[i] = piece.offset(i);
     kept.limit[i] = piece.limit(i);
   }
@@ -64,11 +77,26 @@ bool Orbit::slips(Index slider) const {
   });
 }
 
+void Orbit::carry(FlowDerivative& derivative) const {
+  for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].turn, pieces_[i].states);
+}
+
+std::span<double> Orbit::difference(const Piece& piece, Index first, Index second, std::span<double> storage) const {
+  const Index n = piece.q.rows();
+  const double *a = first == ground ? nullptr : piece.q.data() + first,
+               *b = second == ground ? nullptr : piece.q.data() + second;
+  const auto terms = static_cast<std::size_t>(piece.terms);
+  for (std::size_t k = 0; k < terms; ++k, a += a ? n : 0, b += b ? n : 0) storage[k] = (a ? *a : 0.0) - (b ? *b : 0.0);
+  return storage.first(terms);
+}
+
 void Orbit::displacement_range(Index slider, double& low, double& high) const {
   Range range;
+  const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (std::size_t i = 0; i < count_; ++i)
-    include_range({pieces_[i].u.col(slider).data(), static_cast<std::size_t>(pieces_[i].terms)}, pieces_[i].length,
-                  range.low, range.high);
+    include_range(difference(pieces_[i], element.first, element.second, storage), pieces_[i].length, range.low,
+                  range.high);
   low = range.low;
   high = range.high;
 }
@@ -91,10 +119,7 @@ void Orbit::measure_ranges(const SteadyRequest& request, bool half, SteadyRespon
     Range position, velocity, acceleration;
     for (std::size_t i = 0; i < count_; ++i) {
       const Piece& piece = pieces_[i];
-      std::span<double> c(storage.data(), static_cast<std::size_t>(piece.terms));
-      for (Index k = 0; k < piece.terms; ++k)
-        c[static_cast<std::size_t>(k)] =
-            piece.q(what.first, k) - (what.second == ground ? 0.0 : piece.q(what.second, k));
+      const auto c = difference(piece, what.first, what.second, storage);
       include_range(c, piece.length, position.low, position.high);
       if (!request.rates) continue;
       const auto rate = differentiate(c);
@@ -115,32 +140,46 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
   static const numerics::GaussLegendre<nodes> gauss;
   static const Nodes node = Eigen::Map<const Nodes>(gauss.node.data());
   static const Nodes weight = Eigen::Map<const Nodes>(gauss.weight.data());
+  static const Nodes offset = node - 0.5;
+  using Complex = std::complex<double>;
   const Index n = system_.size();
   const auto observed = static_cast<Index>(request.observed.size());
   const auto orders = static_cast<Index>(request.harmonics.size());
   const double omega = excitation.angular_frequency, period = excitation.period(), share = half ? 2.0 : 1.0;
   const SparseMatrix& damping = system_.damping();
-  response.mean = Vector::Zero(observed);
-  response.rms = Vector::Zero(observed);
-  response.harmonics = ComplexMatrix::Zero(observed, orders);
+  response.mean.setZero(observed);
+  response.rms.setZero(observed);
+  response.harmonics.setZero(observed, orders);
   response.viscous_work = response.input_work = 0.0;
 
   int highest = excitation.harmonics.empty() ? 1 : excitation.harmonics.back().order;
   for (const int order : request.harmonics) highest = std::max(highest, order);
-  Eigen::Array<double, nodes, Eigen::Dynamic> q(nodes, n), v(nodes, n);
-  std::array<std::complex<double>, nodes> turned, rotated;
-  const auto rotate = [&](int order) {  // exp(i order w t)
-    for (std::size_t j = 0; j < nodes; ++j) {
-      std::complex<double> power = turned[j];
-      for (int k = 1; k < order; ++k) power *= turned[j];
-      rotated[j] = power;
+  positions_.resize(nodes, n);
+  velocities_.resize(nodes, n);
+  // exp(i order w t) about the middle of a part, times the weights, and the middle's own.
+  Nodes base_cosine, base_sine, cosine, sine;
+  Complex middle;
+  int present = 0;
+  const auto rotate = [&](int order) {
+    if (present > order) present = 0;
+    if (present == 0) {
+      cosine = weight;
+      sine.setZero();
+    }
+    for (; present < order; ++present) {
+      const Nodes before = cosine;
+      cosine = before * base_cosine - sine * base_sine;
+      sine = before * base_sine + sine * base_cosine;
     }
   };
+  // The integral over the part of x exp(i order w t), per width.
+  const auto moment = [&](const auto& x) { return Complex((x * cosine).sum(), (x * sine).sum()); };
 
   for (std::size_t i = 0; i < count_; ++i) {
     const Piece& piece = pieces_[i];
-    const int parts = std::max(1, static_cast<int>(std::ceil(highest * omega * piece.length / turn)));
+    const int parts = std::max(1, static_cast<int>(std::ceil(highest * omega * piece.length / most_turn)));
     const double width = piece.length / parts;
+    turn_by(omega * width, offset, base_cosine, base_sine);
     for (int part = 0; part < parts; ++part) {
       const Nodes s = width * (part + node);
       for (Index c = 0; c < n; ++c) {
@@ -149,45 +188,44 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
           slope = slope * s + value;
           value = value * s + piece.q(c, k);
         }
-        q.col(c) = value;
-        v.col(c) = slope;
+        positions_.col(c) = value;
+        velocities_.col(c) = slope;
       }
-      for (std::size_t j = 0; j < nodes; ++j)
-        turned[j] = std::polar(1.0, omega * (piece.start + s[static_cast<Index>(j)]));
+      const double angle = omega * (piece.start + width * (part + 0.5));
+      present = 0;
+      int turned = 1;
+      middle = std::polar(1.0, angle);
+      const auto turn_middle = [&](int order) {
+        if (order != turned) middle = std::polar(1.0, order * angle);
+        turned = order;
+      };
 
       for (Index o = 0; o < observed; ++o) {
         const auto& what = request.observed[static_cast<std::size_t>(o)];
-        Nodes x = q.col(what.first);
-        if (what.second != ground) x -= q.col(what.second);
+        Nodes x = positions_.col(what.first);
+        if (what.second != ground) x -= positions_.col(what.second);
         response.mean[o] += width * (weight * x).sum();
         response.rms[o] += width * (weight * x.square()).sum();
-      }
-      for (Index h = 0; h < orders; ++h) {
-        rotate(request.harmonics[static_cast<std::size_t>(h)]);
-        for (Index o = 0; o < observed; ++o) {
-          const auto& what = request.observed[static_cast<std::size_t>(o)];
-          std::complex<double> sum = 0.0;
-          for (Index j = 0; j < nodes; ++j) {
-            const double x = q(j, what.first) - (what.second == ground ? 0.0 : q(j, what.second));
-            sum += weight[j] * x * std::conj(rotated[static_cast<std::size_t>(j)]);
-          }
-          response.harmonics(o, h) += width * sum;
+        for (Index h = 0; h < orders; ++h) {
+          const int order = request.harmonics[static_cast<std::size_t>(h)];
+          rotate(order);
+          turn_middle(order);
+          response.harmonics(o, h) += width * std::conj(middle * moment(x));
         }
       }
       for (const LoadHarmonic& load : excitation.harmonics) {
         rotate(load.order);
-        std::complex<double> sum = 0.0;
-        for (Index c = 0; c < n; ++c) {
-          if (load.amplitude[c] == 0.0) continue;
-          std::complex<double> moment = 0.0;
-          for (Index j = 0; j < nodes; ++j) moment += weight[j] * q(j, c) * rotated[static_cast<std::size_t>(j)];
-          sum += load.amplitude[c] * moment;
-        }
-        response.input_work += share * omega * load.order * width * sum.imag();
+        turn_middle(load.order);
+        Complex sum = 0.0;
+        for (Index c = 0; c < n; ++c)
+          if (load.amplitude[c] != 0.0) sum += load.amplitude[c] * moment(positions_.col(c));
+        response.input_work += share * omega * load.order * width * (middle * sum).imag();
       }
-      for (Index c = 0; c < damping.outerSize(); ++c)
+      for (Index c = 0; c < damping.outerSize(); ++c) {
+        const Nodes weighted = weight * velocities_.col(c);
         for (SparseMatrix::InnerIterator entry(damping, c); entry; ++entry)
-          response.viscous_work += share * width * entry.value() * (weight * v.col(entry.row()) * v.col(c)).sum();
+          response.viscous_work += share * width * entry.value() * (velocities_.col(entry.row()) * weighted).sum();
+      }
     }
   }
   if (half) response.mean.setZero();
@@ -202,12 +240,14 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
 void Orbit::measure_sliders(double period, bool half, SteadyResponse& response) const {
   const Index m = system_.slider_count();
   const double share = half ? 2.0 : 1.0;
-  response.dissipated = Vector::Zero(m);
-  response.slip_share = Vector::Zero(m);
-  response.offset = Vector::Zero(m);
+  response.dissipated.setZero(m);
+  response.slip_share.setZero(m);
+  response.offset.setZero(m);
   response.transitions = 0;
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (Index i = 0; i < m; ++i) {
     const auto k = static_cast<std::size_t>(i);
+    const auto& slider = system_.sliders()[k];
     for (std::size_t p = 0; p < count_; ++p) {
       const Piece& piece = pieces_[p];
       const SliderState state = piece.states[k];
@@ -216,7 +256,7 @@ void Orbit::measure_sliders(double period, bool half, SteadyResponse& response) 
       const auto sign_before = static_cast<int>(before.states[k]) * (p == 0 && half ? -1 : 1);
       if (piece.limit[i] > 0.0 && sign_before != static_cast<int>(state)) response.transitions += half ? 2 : 1;
       if (state == SliderState::stick) continue;
-      const std::span<const double> u(piece.u.col(i).data(), static_cast<std::size_t>(piece.terms));
+      const auto u = difference(piece, slider.first, slider.second, storage);
       response.dissipated[i] += share * piece.limit[i] * std::abs(polynomial(u, piece.length) - u[0]);
       response.slip_share[i] += share * piece.length / period;
     }
@@ -230,6 +270,7 @@ Waveform Orbit::waveform(const Excitation& excitation, bool half, int points) co
                 Matrix::Zero(m, points)};
   if (count_ == 0) return wave;
   const double period = excitation.period();
+  std::array<double, TaylorPiece::degree + 1> storage;
   for (int j = 0; j < points; ++j) {
     wave.time[j] = period * j / points;
     const bool mirrored = half && 2 * j >= points;
@@ -245,10 +286,10 @@ Waveform Orbit::waveform(const Excitation& excitation, bool half, int points) co
     wave.position.col(j) *= sign;
     wave.velocity.col(j) *= sign;
     for (Index i = 0; i < m; ++i) {
-      const double u = polynomial({piece.u.col(i).data(), static_cast<std::size_t>(piece.terms)}, s);
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      const double u = polynomial(difference(piece, slider.first, slider.second, storage), s);
       const bool sticks = piece.states[static_cast<std::size_t>(i)] == SliderState::stick;
-      const double force =
-          piece.offset[i] + (sticks ? system_.sliders()[static_cast<std::size_t>(i)].stiffness * u : 0.0);
+      const double force = piece.offset[i] + (sticks ? slider.stiffness * u : 0.0);
       wave.displacement(i, j) = sign * u;
       wave.slider_force(i, j) = sign * std::clamp(force, -piece.limit[i], piece.limit[i]);
     }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <rubato/integrate/exact/flow_derivative.hpp>
 #include <rubato/integrate/exact/taylor_piece.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
+#include <span>
 #include <vector>
 
 namespace rubato::integrate {
@@ -16,6 +18,8 @@ class Orbit {
   void clear() { count_ = 0; }
   void add(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states);
   bool slips(Index slider) const;
+  /// Carries the derivative of the flow along what is stored.
+  void carry(FlowDerivative& derivative) const;
 
   /// Smallest and largest u = x_first - x_second of a slider over what is stored [m].
   void displacement_range(Index slider, double& low, double& high) const;
@@ -29,11 +33,14 @@ class Orbit {
  private:
   struct Piece {
     double start = 0.0, length = 0.0;  // [s]
+    double turn = 0.0;                 // length times the fastest rate
     Index terms = 0;                   // of the polynomials that matter over the length
-    Matrix q, u;                       // coefficients [n x terms], [terms x m]
+    Matrix q;                          // coefficients, the first `terms` columns [n x degree + 1]
     Vector offset, limit;              // of the slider forces [m] [N]
     std::vector<SliderState> states;
   };
+  /// Coefficients of x_first - x_second in a piece, in `storage`.
+  std::span<double> difference(const Piece& piece, Index first, Index second, std::span<double> storage) const;
   void measure_ranges(const SteadyRequest& request, bool half, SteadyResponse& response) const;
   void measure_integrals(const Excitation& excitation, const SteadyRequest& request, bool half,
                          SteadyResponse& response) const;
@@ -41,7 +48,8 @@ class Orbit {
 
   const system::LocallyNonlinear& system_;
   std::vector<Piece> pieces_;
-  std::size_t count_ = 0;  // of the pieces in use: their memory is kept
+  std::size_t count_ = 0;                           // of the pieces in use: their memory is kept
+  mutable Eigen::ArrayXXd positions_, velocities_;  // at the nodes of a quadrature, by columns of coordinate
 };
 
 }  // namespace rubato::integrate

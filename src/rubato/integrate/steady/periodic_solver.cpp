@@ -1,6 +1,10 @@
 #include <rubato/integrate/steady/equivalent_linear.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
+#include <rubato/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,6 +19,7 @@ constexpr double offset_margin = 1e-10;  // by which a slider that never slips s
 constexpr double good_enough = 1e-10;    // residual that is accepted where round-off allows no smaller one
 constexpr double suspicious = 1e3;       // a step that much longer than the state: a resonance without damping?
 constexpr double fine_balance = 2e-11;   // of the works in a period
+constexpr std::size_t most_known = 24, most_interpolated = 6;
 constexpr int most_halvings = 3, most_moves = 60, rest_periods = 20, longest_stretch = 64;
 
 double imbalance(const SteadyResponse& response) {
@@ -24,27 +29,35 @@ double imbalance(const SteadyResponse& response) {
 
 }  // namespace
 
-/// Keeps the pieces of a pass and carries the derivative along.
+/// Keeps the pieces of a pass.
 class PeriodicSolver::Recorder final : public ExactVisitor {
  public:
-  Recorder(Orbit& orbit, FlowDerivative& derivative) : orbit_(orbit), derivative_(derivative) {
-    orbit_.clear();
-    derivative_.set_identity();
-  }
+  explicit Recorder(Orbit& orbit) : orbit_(orbit) { orbit_.clear(); }
   bool sample(const system::State&, const ExactWork&) override { return true; }
   bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
   void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) override {
     orbit_.add(piece, start, length, states);
-    derivative_.pass(length, states);
   }
 
  private:
   Orbit& orbit_;
-  FlowDerivative& derivative_;
 };
 
+namespace {
+
+const system::LocallyNonlinear& checked(const system::LocallyNonlinear& system) {
+  if (system.size() > largest_exact)
+    throw InvalidInput(
+        fmt::format("solver = \"periodic\" is for up to {} coordinates, the model has {}; take solver = "
+                    "\"harmonic_balance\", whose cost grows with the sliders alone",
+                    largest_exact, system.size()));
+  return system;
+}
+
+}  // namespace
+
 PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyRequest request, PeriodicOptions options)
-    : system_(system),
+    : system_(checked(system)),
       request_(std::move(request)),
       options_(options),
       n_(system.size()),
@@ -55,6 +68,7 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
       start_(system.start()),
       end_(system.start()) {
   y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
+  differences_.assign(most_interpolated - 1, y_);
   wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
 }
 
@@ -71,19 +85,25 @@ void PeriodicSolver::put(const Vector& y, const Excitation& excitation) {
 }
 
 double PeriodicSolver::size_of(const Excitation& excitation, const Vector& y) const {
-  const double omega = excitation.angular_frequency;
-  const Vector product = system_.mass() * y.head(n_), rate_product = system_.mass() * y.segment(n_, n_);
-  return std::sqrt(y.head(n_).dot(product) + y.segment(n_, n_).dot(rate_product) / (omega * omega));
+  double energy = 0.0, rate_energy = 0.0;
+  const SparseMatrix& mass = system_.mass();
+  for (Index c = 0; c < mass.outerSize(); ++c)
+    for (SparseMatrix::InnerIterator entry(mass, c); entry; ++entry) {
+      energy += y[entry.row()] * entry.value() * y[c];
+      rate_energy += y[n_ + entry.row()] * entry.value() * y[n_ + c];
+    }
+  return std::sqrt(energy + rate_energy / (excitation.angular_frequency * excitation.angular_frequency));
 }
 
-// One pass of the flow from y_, over a period or half of it: orbit, derivative and P(y) - y.
+// One pass of the flow from y_, over a period or half of it: orbit and P(y) - y.
 bool PeriodicSolver::pass(const Excitation& excitation) {
   start_.t = 0.0;
   start_.q = y_.head(n_);
   start_.v = y_.segment(n_, n_);
   start_.slider_force = y_.tail(m_);
   end_ = start_;
-  Recorder recorder(orbit_, derivative_);
+  Recorder recorder(orbit_);
+  factors_are_of_orbit_ = false;
   const ExactReport report = flow_.advance(end_, excitation.period() * (half_ ? 0.5 : 1.0), {}, recorder);
   if (report.end != ExactEnd::reached) return false;
   const double sign = half_ ? -1.0 : 1.0;
@@ -101,12 +121,15 @@ double PeriodicSolver::residual(const Excitation& excitation) {
   return result;
 }
 
-// Newton's step from y_ with the derivative of the pass just made. False at a resonance without damping.
-bool PeriodicSolver::correct() {
+// Newton's matrix at y_, from the pass just made.
+void PeriodicSolver::factorise() {
+  if (factors_are_of_orbit_) return;
+  factors_are_of_orbit_ = true;
+  derivative_.set_identity();
+  orbit_.carry(derivative_);
   matrix_ = derivative_.matrix();
   if (half_) matrix_ = -matrix_;
   matrix_.diagonal().array() -= 1.0;
-  correction_ = -difference_;
   if (!half_)
     for (Index i = 0; i < m_; ++i) {
       if (orbit_.slips(i)) continue;
@@ -117,10 +140,17 @@ bool PeriodicSolver::correct() {
       matrix_(row, row) = 1.0;
       if (slider.first != ground) matrix_(row, slider.first) -= slider.stiffness;
       if (slider.second != ground) matrix_(row, slider.second) += slider.stiffness;
-      correction_[row] = offset_shift_[i];
     }
   factors_.compute(matrix_);
-  correction_ = factors_.solve(correction_).eval();
+}
+
+// Newton's step from y_, with the matrix last factorised. False at a resonance without damping.
+bool PeriodicSolver::correct() {
+  right_side_ = -difference_;
+  if (!half_)
+    for (Index i = 0; i < m_; ++i)
+      if (!orbit_.slips(i)) right_side_[2 * n_ + i] = offset_shift_[i];
+  correction_.noalias() = factors_.solve(right_side_);
   return correction_.allFinite();
 }
 
@@ -162,6 +192,7 @@ double PeriodicSolver::force_by_offset(Index slider) {
   std::swap(offset_probe_, offset_shift_);
   difference_.swap(best_);
   difference_.setZero();
+  factorise();
   const bool solved = correct();
   difference_.swap(best_);
   std::swap(offset_probe_, offset_shift_);
@@ -187,46 +218,79 @@ void PeriodicSolver::march_from_rest(const Excitation& excitation) {
                                              system_.relative_displacement(i, y_.head(n_));
 }
 
-// Extrapolates the points before in the frequency, or guesses.
-void PeriodicSolver::predict(const Excitation& excitation) {
-  const double w = excitation.angular_frequency;
-  if (known_.empty()) {
-    if (!equivalent_linear_state(system_, excitation, start_.q, start_.v, start_.slider_force)) {
-      start_.q.setZero(n_);
-      start_.v.setZero(n_);
-      start_.slider_force.setZero(m_);
-    }
+void PeriodicSolver::guess(const Excitation& excitation) {
+  if (equivalent_linear_state(system_, excitation, start_.q, start_.v, start_.slider_force))
     y_ << start_.q, start_.v, start_.slider_force;
-    return;
-  }
-  Vector y = known_[0].y;
-  if (known_.size() > 1) {
-    const double step = w - known_[0].angular_frequency;
-    const double last = known_[0].angular_frequency - known_[1].angular_frequency;
-    if (step * last > 0.0 && std::abs(step) <= 2.0 * std::abs(last)) {
-      const Vector slope = (known_[0].y - known_[1].y) / last;
-      y += step * slope;
-      if (known_.size() > 2) {
-        const double older = known_[1].angular_frequency - known_[2].angular_frequency;
-        if (older * last > 0.0 && std::abs(last) <= 2.0 * std::abs(older))
-          y += step * (step + last) / (last + older) * (slope - (known_[1].y - known_[2].y) / older);
-      }
+  else
+    y_.setZero();
+}
+
+// Newton's interpolation through the points next to the frequency, the nearest first. Its terms are added while they
+// fall: across a kink of the response, and far from what is known, that is soon no longer so.
+void PeriodicSolver::predict(const Excitation& excitation) {
+  if (known_.empty()) return guess(excitation);
+  const double w = excitation.angular_frequency;
+  const auto distance = [w](const Known& known) { return std::abs(known.angular_frequency - w); };
+  const std::size_t used = std::min(known_.size(), most_interpolated);
+  std::partial_sort(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(used), known_.end(),
+                    [&](const Known& a, const Known& b) { return distance(a) < distance(b); });
+  y_ = known_[0].y;
+  double last = scaled_size(y_, w), factor = 1.0;
+  for (std::size_t order = 1; order < used; ++order) {
+    // Divided differences of this order, in the place of those before.
+    for (std::size_t i = 0; i + order < used; ++i) {
+      Vector& difference = differences_[i];
+      difference = ((order == 1 ? known_[i].y : difference) - (order == 1 ? known_[i + 1].y : differences_[i + 1])) /
+                   (known_[i].angular_frequency - known_[i + order].angular_frequency);
     }
+    factor *= w - known_[order - 1].angular_frequency;
+    const double size = std::abs(factor) * scaled_size(differences_[0], w);
+    if (!(size < last)) break;
+    y_ += factor * differences_[0];
+    last = size;
   }
-  put(y, excitation);
+  y_.tail(m_) = y_.tail(m_).cwiseMax(-excitation.limits).cwiseMin(excitation.limits);
   // A slider that slips at t = 0 goes on to slip there.
-  for (Index i = 2 * n_; i < y_.size(); ++i) {
-    const double limit = excitation.limits[i - 2 * n_];
-    if (std::abs(known_[0].y[i]) >= limit) y_[i] = std::copysign(limit, known_[0].y[i]);
+  for (Index i = 0; i < m_; ++i) {
+    const double force = known_[0].y[2 * n_ + i];
+    if (std::abs(force) >= known_[0].limits[i]) y_[2 * n_ + i] = std::copysign(excitation.limits[i], force);
   }
 }
 
+double PeriodicSolver::scaled_size(const Vector& y, double omega) const {
+  return std::sqrt(y.head(n_).squaredNorm() + y.segment(n_, n_).squaredNorm() / (omega * omega));
+}
+
+// The oldest goes where there are too many, and those of the same frequency.
 void PeriodicSolver::remember(const Excitation& excitation) {
-  if (!known_.empty() && known_[0].angular_frequency == excitation.angular_frequency) known_.clear();
-  if (known_.size() < 3) known_.emplace_back();
-  std::rotate(known_.begin(), known_.end() - 1, known_.end());
-  known_[0].angular_frequency = excitation.angular_frequency;
-  known_[0].y = y_;
+  const double w = excitation.angular_frequency;
+  auto place = std::find_if(known_.begin(), known_.end(),
+                            [w](const Known& known) { return std::abs(known.angular_frequency - w) <= 1e-9 * w; });
+  if (place == known_.end() && known_.size() < most_known) place = known_.emplace(place);
+  if (place == known_.end())
+    place = std::min_element(known_.begin(), known_.end(),
+                             [](const Known& a, const Known& b) { return a.serial < b.serial; });
+  place->angular_frequency = w;
+  place->serial = ++serial_;
+  place->limits = excitation.limits;
+  place->y = y_;
+}
+
+// Points of other loads or limits do not lie on one curve with the next: the nearest of them is all they are good for.
+void PeriodicSolver::forget_others(const Excitation& excitation) {
+  const auto same_load = [](const LoadHarmonic& a, const LoadHarmonic& b) {
+    return a.order == b.order && a.amplitude == b.amplitude;
+  };
+  if (known_.size() < 2) return;
+  if (excitation.limits == last_.limits && excitation.constant == last_.constant &&
+      std::equal(excitation.harmonics.begin(), excitation.harmonics.end(), last_.harmonics.begin(),
+                 last_.harmonics.end(), same_load))
+    return;
+  std::swap(known_[0], *std::min_element(known_.begin(), known_.end(), [&](const Known& a, const Known& b) {
+              return std::abs(a.angular_frequency - excitation.angular_frequency) <
+                     std::abs(b.angular_frequency - excitation.angular_frequency);
+            }));
+  known_.resize(1);
 }
 
 void PeriodicSolver::take_start(const Excitation& excitation, SteadyStart start) {
@@ -263,6 +327,7 @@ double PeriodicSolver::observed_size(const Vector& y) const {
 }
 
 void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) {
+  forget_others(excitation);
   last_ = excitation;
   response.periods = 1;
   response.iterations = 0;
@@ -271,7 +336,7 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   take_start(excitation, start);
 
   response.status = SteadyStatus::not_converged;
-  const bool converged = iterate(excitation, response);
+  const bool converged = iterate(excitation, response) || iterate_from_elsewhere(excitation, response);
   if (response.status == SteadyStatus::unbounded) {
     report_unbounded(response);
     known_.clear();
@@ -280,7 +345,10 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   response.status = converged ? SteadyStatus::converged : SteadyStatus::not_converged;
   orbit_.measure(excitation, request_, half_, response);
   // What the small rest of the residual does to the balance of a slightly damped structure.
-  for (int polish = 0; converged && polish < 2 && imbalance(response) > fine_balance && correct(); ++polish) {
+  for (int polish = 0; converged && polish < 2 && imbalance(response) > fine_balance; ++polish) {
+    factorise();
+    near_factors_ = true;
+    if (!correct()) break;
     ++response.iterations;
     put(y_ + correction_, excitation);
     if (!pass(excitation)) break;
@@ -289,6 +357,8 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   }
   const double largest = response.amplitude.size() > 0 ? response.amplitude.maxCoeff() : 0.0;
   response.error = round_off;
+  // After a full step of Newton its matrix is as good as the one here would be.
+  if (!near_factors_) factorise();
   if (correct() && largest > 0.0) {
     Vector rates = Vector::Zero(y_.size());
     rates.head(n_) = correction_.segment(n_, n_) / excitation.angular_frequency;
@@ -300,36 +370,65 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     known_.clear();
 }
 
+// Where the points before led nowhere: from a guess that knows nothing of them, then from where nothing moves. The best
+// that all found is left in y_ and the orbit.
+bool PeriodicSolver::iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response) {
+  Vector best = y_;
+  double least = response.residual;
+  for (const bool from_guess : {true, false}) {
+    if (response.status == SteadyStatus::unbounded) return false;
+    if (from_guess && known_.empty()) continue;
+    if (from_guess)
+      guess(excitation);
+    else
+      y_.setZero();
+    if (iterate(excitation, response)) return true;
+    if (response.residual < least) {
+      least = response.residual;
+      best = y_;
+    }
+  }
+  y_ = best;
+  near_factors_ = false;
+  response.residual = pass(excitation) ? residual(excitation) : infinity;
+  return false;
+}
+
 // Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
 // the flow itself is followed then.
 bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
   double best = infinity;
   int halvings = 0, periods = 0, stretch = 4;
+  const int first = response.iterations;
   bool may_move = true, moving = false;
+  near_factors_ = false;
   Vector settled;  // an orbit whose offsets are being moved
-  while (response.iterations < options_.most_iterations) {
+  while (response.iterations < first + options_.most_iterations) {
     ++response.iterations;
     double& last = response.residual;
     last = pass(excitation) ? residual(excitation) : infinity;
     if (last <= options_.tolerance) {
-      if (!may_move || response.iterations > most_moves || !must_move_offsets(excitation)) return true;
+      if (!may_move || response.iterations > first + most_moves || !must_move_offsets(excitation)) return true;
       settled = y_;
       moving = true;
       best = infinity;
     }
+    // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
+    const bool factors_do = near_factors_ && 2.0 * last * last < 0.1 * options_.tolerance * best;
+    near_factors_ = false;
     if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
       best = last;
       best_ = y_;
       halvings = 0;
+      if (!factors_do) factorise();
       const bool solved = correct();
       offset_shift_.setZero();
       if (solved) {
         put(best_ + correction_, excitation);
+        near_factors_ = true;
         if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
       }
-      std::vector<bool> sticks(static_cast<std::size_t>(m_));
-      for (Index i = 0; i < m_; ++i) sticks[static_cast<std::size_t>(i)] = !orbit_.slips(i);
-      if (is_at_undamped_resonance(system_, excitation, sticks)) {
+      if (is_driven_beyond_friction(system_, excitation)) {
         response.status = SteadyStatus::unbounded;
         return false;
       }

@@ -13,8 +13,8 @@ namespace rubato::integrate {
 
 struct PeriodicOptions {
   double tolerance = 1e-12;   ///< of the residual: |y(T) - y(0)| over |y(0)|, see PeriodicSolver
-  int most_iterations = 200;  ///< of Newton
-  int most_periods = 4000;    ///< marched where Newton alone does not come nearer
+  int most_iterations = 200;  ///< of Newton, from each start that is tried
+  int most_periods = 4000;    ///< marched where Newton alone does not come nearer, likewise
 };
 
 /// The periodic orbit itself, by shooting: Newton's method on
@@ -23,8 +23,9 @@ struct PeriodicOptions {
 ///
 /// with P the exact flow over a period and its exact derivative (ExactFlow, FlowDerivative); over half a period, with
 /// P(y) + y = 0, where loads and start are half-wave symmetric. Points continue from those before by extrapolation in
-/// the frequency; the first starts from one harmonic with equivalent stiffness and damping of the sliders. Where Newton
-/// does not come nearer, the flow itself is followed for some periods: with damping it always does.
+/// the frequency; the first starts from one harmonic with equivalent stiffness and damping of the sliders, and so does
+/// a point to which those before do not lead. Where Newton does not come nearer, the flow itself is followed for some
+/// periods: with damping it always does.
 ///
 /// A slider that never slips leaves its offset fc - kT u free: it is the one that SteadyStart asks for, or the nearest
 /// with which it does not slip.
@@ -47,22 +48,28 @@ class PeriodicSolver final : public SteadySolver {
   class Recorder;
   struct Known {
     double angular_frequency = 0.0;
-    Vector y;
+    long serial = 0;
+    Vector limits, y;
   };
   void take_start(const Excitation& excitation, SteadyStart start);
+  void guess(const Excitation& excitation);
   void predict(const Excitation& excitation);
   void march_from_rest(const Excitation& excitation);
   bool march(const Excitation& excitation, int periods);
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
+  void factorise();
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
+  bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
   double force_by_offset(Index slider);
   bool must_move_offsets(const Excitation& excitation);
   double size_of(const Excitation& excitation, const Vector& y) const;
   double observed_size(const Vector& y) const;
   void put(const Vector& y, const Excitation& excitation);
   void remember(const Excitation& excitation);
+  void forget_others(const Excitation& excitation);
+  double scaled_size(const Vector& y, double omega) const;
   void report_unbounded(SteadyResponse& response) const;
 
   const system::LocallyNonlinear& system_;
@@ -74,11 +81,16 @@ class PeriodicSolver final : public SteadySolver {
   Orbit orbit_;
   system::State start_, end_;                  // of a pass
   Vector y_, difference_, correction_, best_;  // (q, v, fc) at the start; P(y) - y; Newton's step from best_
+  Vector right_side_;
   Vector wanted_offset_, offset_shift_, offset_probe_,
       centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
   Eigen::PartialPivLU<Matrix> factors_;
-  std::vector<Known> known_;  // the last three points, the newest first
+  bool factors_are_of_orbit_ = false;
+  bool near_factors_ = false;        // the last pass was made after a full step with these factors
+  std::vector<Known> known_;         // points before, from which the next is extrapolated
+  std::vector<Vector> differences_;  // divided differences of theirs
+  long serial_ = 0;
   bool half_ = false;
   Excitation last_;
 };

@@ -111,7 +111,7 @@ function log_axis(values) {
 }
 
 // So many curves have a line of the legend each; more are told apart by a scale of colours.
-const most_in_legend = 8;
+const most_in_legend = 12;
 const most_colors = 32;
 
 /** `y` with gaps where it leaps by more than half a turn, so that a phase is not drawn across the figure. */
@@ -130,7 +130,7 @@ function broken_at_turns(x, y) {
 }
 
 /**
- * Lines of curves. `points(curve)` gives {x, y}. Up to eight curves have a line of the legend each; of more the colour
+ * Lines of curves. `points(curve)` gives {x, y}. Up to a dozen curves have a line of the legend each; of more the colour
  * tells the value of the key at `color_place`.
  */
 function family_traces(table, curves, points, color_place, hover_units) {

@@ -5,7 +5,21 @@ function is_damper_curve(analysis) {
   return analysis.attributes.type === "damper_curve" && table && table.name === "" && Boolean(table.curves);
 }
 
-function damper_figure(table, optimum) {
+/** The largest amplitudes of both linear limits over the parameter: dashed without sliders, dotted with all stuck. */
+function damper_limits(linear, abscissa_name) {
+  const parameter = linear && variable_of(linear, abscissa_name);
+  if (!parameter) return [];
+  return ["free", "stuck"].flatMap((limit) => {
+    const variable = variable_of(linear, `${limit}_objective`);
+    return variable ? [{
+      type: "scatter", mode: "lines", x: linear.overview[parameter.index][0], y: linear.overview[variable.index][0], name: `Linear, ${limit}`,
+      showlegend: true, line: {color: "#59636d", width: 1.3, dash: limit === "free" ? "dash" : "dot"},
+      hovertemplate: `Linear, ${limit}: %{y:.6~g} ${pretty_unit(variable.unit)}<extra></extra>`,
+    }] : [];
+  });
+}
+
+function damper_figure(table, optimum, linear) {
   const {abscissa} = table.curves;
   const objective = variable_of(table, "objective"), amplitude = variable_of(table, "amplitude"), frequency = variable_of(table, "angular_frequency");
   const curves = curves_of(table);
@@ -21,7 +35,8 @@ function damper_figure(table, optimum) {
   const named = optimum && optimum.rows === 1 && variable_of(optimum, table.variables[abscissa].name);
   return make_figure({
     caption: `Damper curve: the largest value over frequency against the parameter (top), and the frequency where it stands (bottom).` +
-      (named ? " The star marks the optimum." : "") + curves_text(table),
+      (named ? " The star marks the optimum." : "") + (is_single && linear ? " Dashed and dotted: the linear limits, sliders free and sliders stuck." : "") +
+      curves_text(table),
     choosers, height: 560,
     draw: (chosen) => {
       const variable = quantities[quantity_at < 0 ? 0 : chosen[quantity_at]];
@@ -41,6 +56,7 @@ function damper_figure(table, optimum) {
         const which = Math.min(label, Math.max(variable.labels.length - 1, 0));
         traces = family_traces(table, curves, (curve) => ({x: x_of(curve), y: slice(variable.index, which, curve)}), colors[0], hover);
       }
+      if (is_single && (variable === objective || variable === amplitude)) traces.unshift(...damper_limits(linear, table.variables[abscissa].name));
       const flagged = (is_single ? table.overview[variable.index].map((_, which) => which) : [label]).flatMap((which) => flagged_traces(table, variable, which));
       traces.push(...flagged.map((trace, index) => ({...trace, showlegend: index === 0})));
       const layout = {
@@ -86,7 +102,10 @@ function damper_figure(table, optimum) {
 const parameter_unit = (variable) => (variable.unit && variable.unit !== "1" ? pretty_unit(variable.unit) : "SI");
 
 const certificates = {
-  smooth: "the first derivative along the parameter vanishes while the amplitude is largest over frequency",
+  smooth: "the derivative along the parameter and the slope over frequency vanish",
+  corner: "the curve has a corner there: it falls before and rises behind",
+  flat: "the curve does not change there",
+  uncertified: "the best that was found; neither vanishing derivatives nor a kink could be shown",
   bound: "the curve still falls at the end of the range of the parameter",
   kink: "two peaks or coordinates are equal there; the multipliers weigh their derivatives to zero",
 };
@@ -169,14 +188,16 @@ function optimum_distribution(table, optimum) {
 function write_damper_curve(chapter, analysis) {
   const of = (name) => analysis.tables.find((table) => table.name === name && table.rows > 0);
   const [table] = analysis.tables;
-  const optimum = of("optimum"), peaks = of("peaks"), linear = of("linear");
+  const optimum = of("optimum"), peaks = of("peaks"), linear = of("linear"), bands = of("bands");
   if (table.rows === 0) {
     chapter.node.append(element("p", {class: "note"}, "It ended before its first point."));
     return;
   }
   const statuses = statuses_of(table);
   if (statuses.length) add_section(chapter, "Points", statuses);
-  add_section(chapter, "Damper curve", damper_figure(table, optimum));
+  add_section(chapter, "Damper curve", damper_figure(table, optimum, linear));
+  const spread = bands && bands_figure(bands, quantity_label(table, table.curves.abscissa));
+  if (spread) add_section(chapter, "Percentile bands", spread);
   if (optimum) {
     add_section(chapter, "Optimum", [optimum_table(table, optimum), optimum_distribution(table, optimum)].filter((node) => node));
   }
@@ -186,5 +207,5 @@ function write_damper_curve(chapter, analysis) {
   if (sliders.length) {
     add_section(chapter, "Stick and slip", family_figure(table, sliders, {caption: "Sliders at the peak: friction work and share of slip over a period."}));
   }
-  write_tables(chapter, analysis.tables.filter((other) => ![table, optimum, linear, tracked ? peaks : undefined].includes(other)));
+  write_tables(chapter, analysis.tables.filter((other) => ![table, optimum, linear, spread ? bands : undefined, tracked ? peaks : undefined].includes(other)));
 }

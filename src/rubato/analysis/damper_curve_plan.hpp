@@ -1,0 +1,44 @@
+#pragma once
+
+#include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/study_input.hpp>
+#include <rubato/analysis/sweep.hpp>
+#include <rubato/analysis/transient_plan.hpp>
+#include <rubato/integrate/steady/steady_solver.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A damper curve with all its values: what the description says, evaluated and found possible.
+struct DamperCurvePlan {
+  using Objective = model::DamperCurveDescription::Objective;
+
+  std::string parameter;           ///< its name
+  std::size_t place = 0;           ///< among all parameters
+  std::vector<double> values;      ///< of it, rising
+  double from = 0.0, to = 0.0;     ///< of the excitation [rad/s]
+  int samples = 17;                ///< of the scan for peaks, besides the natural frequencies
+  std::size_t excitation = 0;      ///< the place of the parameter that takes the frequencies
+  double excitation_factor = 1.0;  ///< its value over the frequency: 1/(2 pi) for one in hertz
+  Sweep sweep;                     ///< of the other parameters: a curve a line
+  ParameterDependence dependence;
+  Objective objective = Objective::amplitude;
+  std::vector<Observed> observed = {};
+  integrate::SteadyRequest request = {};
+
+  bool structure_follows_parameter = false, structure_follows_frequency = false;
+  bool limits_follow_parameter = false;  ///< the linear limits
+  std::vector<bool> is_structural = {};  ///< of each swept parameter: whether it changes the structure
+
+  double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(values.size()); }
+  /// +1 where the lowest objective is best, -1 where the highest is.
+  double sign() const { return objective == Objective::amplitude ? 1.0 : -1.0; }
+};
+
+/// Evaluates a description and checks that it can run. Throws InvalidInput.
+DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where,
+                                  const model::DamperCurveDescription& description, const StudyInput& input);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <rubato/analysis/study_input.hpp>
+#include <rubato/io/read_study.hpp>
+#include <rubato/model/model.hpp>
+#include <rubato/system/assemble.hpp>
+
+#include <string>
+
+namespace rubato::testing {
+
+/// A study and what an analysis of it needs; keeps everything alive.
+struct PreparedStudy {
+  model::StudyDescription study;
+  numerics::Parameters overrides, parameters;
+  system::LocallyNonlinear system;
+
+  explicit PreparedStudy(const std::string& text, const numerics::Parameters& settings = {})
+      : study(io::read_study_text(text, "study.toml")),
+        overrides(settings),
+        parameters(model::evaluate_parameters(study.parameters, settings)),
+        system(system::assemble(model::build(study.model, parameters, model::NegativeLoad::zero))) {}
+  analysis::StudyInput input() const { return {study, overrides, parameters, system}; }
+};
+
+}  // namespace rubato::testing
