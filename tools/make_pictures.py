@@ -33,6 +33,8 @@ PICTURES = {
     "method-study": {"error": "against step", "radius": "Spectral radius", "elongation": "Period elongation",
                      "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
                      "responses": "response beside"},
+    "building": {"motion": "Motion of the coordinates"},
+    "frame": {"motion": "Motion of the coordinates"},
     "matrices": {"motion": "Motion of the coordinates"},
 }
 WIDTH = 900

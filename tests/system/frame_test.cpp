@@ -51,6 +51,50 @@ TEST(PortalFrame, NamesItsDegreesOfFreedomAndTheirUnits) {
   EXPECT_TRUE(system.is_rotation(15));
 }
 
+/// A cantilever of 2 m along x.
+LocallyNonlinear cantilever(int elements, bool lumped_mass) {
+  model::ModelDescription description;
+  auto& structure = description.structure;
+  structure.nodes = {{"foot", {0.0, 0.0}, {}}, {"tip", {2.0, 0.0}, {}}};
+  structure.materials = {{"steel", 2.1e11, 0.3, {}, 7850.0, {}}};
+  structure.sections = {{"bar", 1e-2, {1e-6}, {}, {}, {}}};
+  model::BeamDescription beam;
+  beam.nodes = {"foot", "tip"};
+  beam.section = "bar";
+  beam.material = "steel";
+  beam.elements = elements;
+  beam.lumped_mass = lumped_mass;
+  beam.formulation = model::BeamDescription::Formulation::euler_bernoulli;
+  structure.beams = {beam};
+  model::SupportDescription foot;
+  foot.node = "foot";
+  foot.fix = {"x", "y", "rz"};
+  structure.supports = {foot};
+  return assemble(model::build(description, {}));
+}
+
+// omega = (beta L)^2 sqrt(E I/(rho A L^4)), cos(beta L) cosh(beta L) = -1. Cubic elements with consistent mass miss
+// omega^2 by (beta h)^4/720 at leading order, from above; halving h divides that by 16.
+TEST(Cantilever, HasTheFrequenciesOfEulerAndBernoulli) {
+  const double scale = std::sqrt(2.1e11 * 1e-6 / (7850.0 * 1e-2 * 16.0));
+  const double roots[] = {1.875104068711961, 4.694091132974175, 7.854757438237613};
+  const Vector coarse = frequencies(cantilever(8, false)), fine = frequencies(cantilever(16, false));
+  for (int i = 0; i < 3; ++i) {
+    const double exact = roots[i] * roots[i] * scale, bound = std::pow(roots[i] / 8.0, 4) / 1440.0;
+    EXPECT_GT(coarse[i], exact);
+    EXPECT_NEAR(coarse[i] / exact - 1.0, bound, 0.15 * bound);
+    EXPECT_NEAR((coarse[i] - exact) / (fine[i] - exact), 16.0, 1.0);
+  }
+}
+
+// Lumped masses: second order in the length of an element.
+TEST(Cantilever, HasTheFirstFrequencyWithLumpedMassesToSecondOrder) {
+  const double exact = std::pow(1.875104068711961, 2) * std::sqrt(2.1e11 * 1e-6 / (7850.0 * 1e-2 * 16.0));
+  const double coarse = frequencies(cantilever(8, true))[0] - exact,
+               fine = frequencies(cantilever(16, true))[0] - exact;
+  EXPECT_NEAR(coarse / fine, 4.0, 0.2);
+}
+
 // Reference page, section 3: "Euler-Bernoulli misses by 5e-3".
 TEST(PortalFrame, MissesTableIWithoutShear) {
   model::ModelDescription description = testing::portal_frame();

@@ -76,7 +76,8 @@ double largest_step(const std::string& title, const model::StepDescription& desc
 
 AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
                                   const integrate::Method& method, const system::LocallyNonlinear& system,
-                                  const numerics::Parameters& parameters, double duration, bool allow_unstable) {
+                                  const system::State& start, const numerics::Parameters& parameters, double duration,
+                                  bool allow_unstable) {
   const std::string title = analysis + "step: ";
   AutomaticStep step;
   step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
@@ -103,7 +104,7 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   try {
     const auto stepper = integrate::make_stepper(method, system);
     const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
-    estimator->start(integrate::consistent_start(system, system.start()));
+    estimator->start(integrate::consistent_start(system, start));
     const double first = plan.first > 0.0 ? plan.first : std::min(plan.largest, estimator->first_step());
     step.expected_steps = std::ceil(duration / first);
   } catch (const InvalidInput& fault) {

@@ -19,13 +19,14 @@ struct AutomaticStep {
   double expected_steps = 0.0;  ///< from the first step: for progress and the size of files
 };
 
-/// Evaluates a description and checks that it can run on a system. Defaults: controller `pi`; estimator `inertia_jump`
-/// for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the duration; largest a
-/// fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless `allow_unstable`, the
-/// stability limit of the method. Throws InvalidInput at the place of the value.
+/// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator
+/// `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the
+/// duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
+/// `allow_unstable`, the stability limit of the method. Throws InvalidInput at the place of the value.
 AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
                                   const integrate::Method& method, const system::LocallyNonlinear& system,
-                                  const numerics::Parameters& parameters, double duration, bool allow_unstable);
+                                  const system::State& start, const numerics::Parameters& parameters, double duration,
+                                  bool allow_unstable);
 
 /// Streams every try of a step into the table `steps`: time, step, error and what became of it.
 class StepRecorder final : public integrate::TryLog {

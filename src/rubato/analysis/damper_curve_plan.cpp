@@ -79,12 +79,14 @@ void plan_objective(DamperCurvePlan& plan, const Description& description, const
   if (plan.objective == Description::Objective::dissipated && input.system.slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),
                        title + "objective = \"dissipated\" needs sliders, and the model has none");
-  if (description.observe) {
-    for (const auto& observation : *description.observe)
-      plan.observed.push_back(observed_of(observation, input.system));
-  } else {
-    for (Index i = 0; i < input.system.size(); ++i)
-      plan.observed.push_back({input.system.coordinates()[static_cast<std::size_t>(i)], i, ground});
+  plan.observed = observed_or_all(description.observe, input.system);
+  if (!plan.observed.empty() && plan.observed.front().is_rotation != plan.observed.back().is_rotation) {
+    if (description.observe)
+      throw InvalidInput(where,
+                         fmt::format("{}observe has \"{}\" [m] and \"{}\" [rad], and the largest amplitude of both "
+                                     "means nothing; keep one kind",
+                                     title, plan.observed.front().label, plan.observed.back().label));
+    std::erase_if(plan.observed, [](const Observed& one) { return one.is_rotation; });
   }
   if (plan.observed.empty() && plan.objective == Description::Objective::amplitude)
     throw InvalidInput(where, title + "observe is empty: the curve needs an amplitude; name a coordinate");

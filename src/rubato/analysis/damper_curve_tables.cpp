@@ -86,7 +86,8 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
       observed_(plan.observed.size()),
       sliders_(static_cast<std::size_t>(input.system.slider_count())) {
   const std::string objective = is_amplitude_ ? "amplitude" : "dissipated";
-  const std::string unit = is_amplitude_ ? "m" : "J";
+  const bool turns = !plan.observed.empty() && plan.observed.front().is_rotation;
+  const std::string amplitude_unit = turns ? "rad" : "m", unit = is_amplitude_ ? amplitude_unit : "J";
   std::vector<std::string> labels, sliders;
   for (const Observed& one : plan.observed) labels.push_back(one.label);
   for (const auto& slider : input.system.sliders()) sliders.push_back(slider.name);
@@ -96,7 +97,9 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
 
   std::vector<Block> blocks = keys;
   blocks.push_back(frequency);
-  if (!labels.empty()) blocks.push_back({"amplitude", "m", "half peak to peak there", "coordinate", labels});
+  if (!labels.empty())
+    blocks.push_back(
+        {"amplitude", amplitude_unit, "half peak to peak there", turns ? "rotation" : "coordinate", labels});
   objective_ = blocks.size() - (labels.empty() ? 0 : 1) + labels.size();
   blocks.push_back(scalar("objective", unit, "largest over frequency: " + objective));
   if (is_amplitude_) blocks.push_back(largest);
@@ -129,7 +132,7 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
   for (const auto& [limit, description] :
        {std::pair<std::string, std::string>{"free", "without sliders"}, {"stuck", "with all sliders stuck"}}) {
     linear.push_back(scalar(limit + "_angular_frequency", "rad/s", "where the amplitude is largest " + description));
-    linear.push_back(scalar(limit + "_objective", "m", "largest amplitude over frequency " + description));
+    linear.push_back(scalar(limit + "_objective", amplitude_unit, "largest amplitude over frequency " + description));
   }
   linear_ = {name, "linear", "value", linear, {}};
 

@@ -27,7 +27,7 @@ class ExactRecorder final : public integrate::ExactVisitor {
         with_transitions_(plan.output == Kind::every_step),
         with_energy_(plan.energy),
         product_(system.size()) {
-    start_ = energy_of(system, system.start(), product_);
+    start_ = energy_of(system, plan.start, product_);
     start_.start = start_.kinetic + start_.strain + start_.slider_stored;
   }
 
@@ -103,7 +103,7 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
   ExactRecorder visitor(plan, system, recorder, context);
   const double interval = plan.output == Kind::interval ? plan.interval : default_interval(system);
   const double round_off = 1e-12 * plan.duration;
-  system::State state = system.start();
+  system::State state = plan.start;
   RunReport run;
   long transitions = 0;
   std::size_t next = 0;

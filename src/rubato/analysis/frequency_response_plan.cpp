@@ -114,13 +114,7 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
 
 void plan_request(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                   const std::string& title, const Location& where) {
-  if (description.observe) {
-    for (const auto& observation : *description.observe)
-      plan.observed.push_back(observed_of(observation, input.system));
-  } else {
-    for (Index i = 0; i < input.system.size(); ++i)
-      plan.observed.push_back({input.system.coordinates()[static_cast<std::size_t>(i)], i, ground});
-  }
+  plan.observed = observed_or_all(description.observe, input.system);
   for (const auto& observed : plan.observed) plan.request.observed.push_back({observed.first, observed.second});
   plan.request.harmonics = {1};
   for (const auto& quantity : description.harmonics) {

@@ -1,4 +1,5 @@
 #include <rubato/analysis/frequency_response_tables.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/analysis/sweep_samples.hpp>
 
 #include <fmt/format.h>
@@ -22,16 +23,18 @@ Block scalar(const std::string& variable, const std::string& unit, const std::st
   return {variable, unit, description, "", {}};
 }
 
-std::vector<std::string> labels_of(const std::vector<Observed>& observed) {
+/// Phases are in radians whatever moves.
+void add_phases(const std::vector<Observed>& observed, const std::string& variable, const std::string& description,
+                std::vector<Block>& blocks) {
   std::vector<std::string> labels;
-  for (const Observed& one : observed) labels.push_back(one.label);
-  return labels;
-}
-
-std::vector<std::string> sliders_of(const StudyInput& input) {
-  std::vector<std::string> names;
-  for (const auto& slider : input.system.sliders()) names.push_back(slider.name);
-  return names;
+  bool has_displacements = false, has_rotations = false;
+  for (const Observed& one : observed) {
+    labels.push_back(one.label);
+    (one.is_rotation ? has_rotations : has_displacements) = true;
+  }
+  if (labels.empty()) return;
+  const char* dimension = !has_rotations ? "coordinate" : !has_displacements ? "rotation" : "observed";
+  blocks.push_back({variable, "rad", description, dimension, labels});
 }
 
 void add_parameters(const FrequencyResponsePlan& plan, const std::vector<bool>& wanted, std::vector<Block>& blocks) {
@@ -76,11 +79,9 @@ Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& in
   return attributes;
 }
 
-/// What the columns of a slider need: dissipated, slip share, offset.
-std::vector<Block> slider_blocks(const std::vector<std::string>& sliders) {
-  return {{"dissipated", "J", "friction work over a period", "slider", sliders},
-          {"slip_share", "1", "share of the period in which it slips", "slider", sliders},
-          {"offset", "N", "force at rest of a slider that never slips, fc - kT u", "slider", sliders}};
+void add_amplitudes(const std::vector<Observed>& observed, std::vector<Block>& blocks) {
+  add_blocks(observed, {"amplitude", "m", "half peak to peak of the displacement"},
+             {"angle_amplitude", "rad", "half peak to peak of the rotation"}, blocks);
 }
 
 /// In (-pi, pi]: the argument of -1 - 0i would be -pi.
@@ -120,19 +121,28 @@ PointStatus point_status(integrate::SteadyStatus status) {
 std::vector<std::string> reserved_columns() {
   return {"point",
           "coordinate",
+          "rotation",
+          "observed",
           "slider",
+          "rotational_slider",
           "direction",
           "angular_frequency",
           "fundamental",
           "amplitude",
+          "angle_amplitude",
           "velocity_amplitude",
+          "angular_velocity_amplitude",
           "acceleration_amplitude",
+          "angular_acceleration_amplitude",
           "phase",
           "mean",
+          "angle_mean",
           "rms",
+          "angle_rms",
           "dissipated",
           "slip_share",
           "offset",
+          "moment_offset",
           "viscous_work",
           "input_work",
           "transitions",
@@ -142,19 +152,24 @@ std::vector<std::string> reserved_columns() {
           "status",
           "time",
           "position",
+          "angle",
           "force",
           "displacement",
+          "moment",
+          "relative_angle",
           "samples",
           "missing",
           "free_amplitude",
+          "free_angle_amplitude",
           "free_phase",
           "stuck_amplitude",
+          "stuck_angle_amplitude",
           "stuck_phase"};
 }
 
 ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
     : layout_{name, "", "point", {}, attributes_of(plan, input)},
-      sliders_(static_cast<std::size_t>(input.system.slider_count())),
+      sliders_(SliderBlocks(input.system).order()),
       has_direction_(plan.has_both_directions),
       has_fundamental_(plan.has_other_fundamental) {
   auto& blocks = layout_.blocks;
@@ -163,23 +178,30 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   blocks.push_back(angular_frequency());
   if (has_fundamental_) blocks.push_back(scalar("fundamental", "rad/s", "common fundamental of the loads"));
   amplitudes_ = blocks.size();
-  const auto labels = labels_of(plan.observed);
-  const auto observe = [&](const std::string& variable, const std::string& unit, const std::string& description) {
-    if (!labels.empty()) blocks.push_back({variable, unit, description, "coordinate", labels});
+  const auto observe = [&](const ColumnNames& of_displacements, const ColumnNames& of_rotations) {
+    add_blocks(plan.observed, of_displacements, of_rotations, blocks);
   };
-  observe("amplitude", "m", "half peak to peak of the displacement");
-  observe("velocity_amplitude", "m/s", "half peak to peak of the velocity");
-  observe("acceleration_amplitude", "m/s2", "half peak to peak of the acceleration");
+  add_amplitudes(plan.observed, blocks);
+  observe({"velocity_amplitude", "m/s", "half peak to peak of the velocity"},
+          {"angular_velocity_amplitude", "rad/s", "half peak to peak of the angular velocity"});
+  observe({"acceleration_amplitude", "m/s2", "half peak to peak of the acceleration"},
+          {"angular_acceleration_amplitude", "rad/s2", "half peak to peak of the angular acceleration"});
   for (const int order : plan.request.harmonics) {
+    const std::string description = fmt::format("amplitude of harmonic {}", order);
     if (order > 1)
-      observe(fmt::format("harmonic{}_amplitude", order), "m", fmt::format("amplitude of harmonic {}", order));
-    observe(order == 1 ? "phase" : fmt::format("harmonic{}_phase", order), "rad",
-            fmt::format("phase of harmonic {}, A cos({} omega t + phase)", order, order));
+      observe({fmt::format("harmonic{}_amplitude", order), "m", description},
+              {fmt::format("harmonic{}_angle_amplitude", order), "rad", description});
+    add_phases(plan.observed, order == 1 ? "phase" : fmt::format("harmonic{}_phase", order),
+               fmt::format("phase of harmonic {}, A cos({} omega t + phase)", order, order), blocks);
   }
-  observe("mean", "m", "mean over a period");
-  observe("rms", "m", "root of the mean square over a period");
-  if (sliders_ > 0)
-    for (Block& block : slider_blocks(sliders_of(input))) blocks.push_back(std::move(block));
+  observe({"mean", "m", "mean over a period"}, {"angle_mean", "rad", "mean over a period"});
+  observe({"rms", "m", "root of the mean square over a period"},
+          {"angle_rms", "rad", "root of the mean square over a period"});
+  const SliderBlocks sliders(input.system);
+  sliders.add({"dissipated", "J", "friction work over a period"}, blocks);
+  sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
+  sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},
+              {"moment_offset", "N m", "moment at rest of a slider that never slips, fc - kT u"}, blocks);
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));
   blocks.push_back(scalar("input_work", "J", "work of the loads over a period"));
   blocks.push_back(scalar("transitions", "1", "from stick to slip and back, in a period"));
@@ -210,9 +232,8 @@ void ResponseTable::add(const RowPlace& place, double fundamental, const integra
   }
   append(response.mean, rows);
   append(response.rms, rows);
-  append(response.dissipated, rows);
-  append(response.slip_share, rows);
-  append(response.offset, rows);
+  for (const Vector* values : {&response.dissipated, &response.slip_share, &response.offset})
+    for (const Index i : sliders_) rows.push_back((*values)[i]);
   rows.push_back(response.viscous_work);
   rows.push_back(response.input_work);
   rows.push_back(static_cast<double>(response.transitions));
@@ -234,14 +255,12 @@ LinearTable::LinearTable(const std::string& name, const FrequencyResponsePlan& p
   auto& blocks = layout_.blocks;
   add_parameters(plan, is_linear_, blocks);
   blocks.push_back(angular_frequency());
-  const auto labels = labels_of(plan.observed);
   for (const auto& [limit, description] :
        {std::pair<std::string, std::string>{"free", "without sliders"}, {"stuck", "with all sliders stuck"}}) {
-    if (labels.empty()) continue;
-    blocks.push_back(
-        {limit + "_amplitude", "m", "half peak to peak of the displacement " + description, "coordinate", labels});
-    blocks.push_back({limit + "_phase", "rad", "phase of harmonic 1 " + description + ", A cos(omega t + phase)",
-                      "coordinate", labels});
+    add_blocks(plan.observed, {limit + "_amplitude", "m", "half peak to peak of the displacement " + description},
+               {limit + "_angle_amplitude", "rad", "half peak to peak of the rotation " + description}, blocks);
+    add_phases(plan.observed, limit + "_phase", "phase of harmonic 1 " + description + ", A cos(omega t + phase)",
+               blocks);
   }
   width_ = layout_.row_width();
 }
@@ -264,19 +283,19 @@ WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePla
               {},
               {{"type", "frequency_response_waveforms"}, {"points", std::to_string(plan.waveform_points)}}},
       observed_(plan.observed),
+      sliders_(SliderBlocks(input.system).order()),
       has_direction_(plan.has_both_directions) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, {}, blocks);
   if (has_direction_) blocks.push_back(direction());
   blocks.push_back(angular_frequency());
   blocks.push_back(scalar("time", "s", "time since the begin of a period"));
-  const auto labels = labels_of(plan.observed);
-  if (!labels.empty()) blocks.push_back({"position", "m", "displacement", "coordinate", labels});
-  const auto sliders = sliders_of(input);
-  if (!sliders.empty()) {
-    blocks.push_back({"force", "N", "slider force; -force acts on the first coordinate", "slider", sliders});
-    blocks.push_back({"displacement", "m", "relative displacement of its ends", "slider", sliders});
-  }
+  add_blocks(plan.observed, {"position", "m", "displacement"}, {"angle", "rad", "rotation"}, blocks);
+  const SliderBlocks sliders(input.system);
+  sliders.add({"force", "N", "slider force; -force acts on the first coordinate"},
+              {"moment", "N m", "slider moment; -moment acts on the first coordinate"}, blocks);
+  sliders.add({"displacement", "m", "relative displacement of its ends"},
+              {"relative_angle", "rad", "relative rotation of its ends"}, blocks);
   width_ = layout_.row_width();
 }
 
@@ -288,8 +307,8 @@ void WaveformTable::add(const RowPlace& place, const integrate::Waveform& wavefo
     rows.push_back(waveform.time[p]);
     for (const Observed& one : observed_)
       rows.push_back(waveform.position(one.first, p) - (one.second == ground ? 0.0 : waveform.position(one.second, p)));
-    for (Index i = 0; i < waveform.slider_force.rows(); ++i) rows.push_back(waveform.slider_force(i, p));
-    for (Index i = 0; i < waveform.displacement.rows(); ++i) rows.push_back(waveform.displacement(i, p));
+    for (const Index i : sliders_) rows.push_back(waveform.slider_force(i, p));
+    for (const Index i : sliders_) rows.push_back(waveform.displacement(i, p));
   }
 }
 
@@ -305,11 +324,11 @@ BandTable::BandTable(const std::string& name, const FrequencyResponsePlan& plan)
   auto& blocks = layout_.blocks;
   if (plan.has_both_directions) blocks.push_back(direction());
   blocks.push_back(angular_frequency());
-  const auto labels = labels_of(plan.observed);
-  for (const int percent : band_percents)
-    if (!labels.empty())
-      blocks.push_back({fmt::format("amplitude_p{:02}", percent), "m",
-                        fmt::format("amplitude below which {} % of the samples lie", percent), "coordinate", labels});
+  for (const int percent : band_percents) {
+    const std::string description = fmt::format("amplitude below which {} % of the samples lie", percent);
+    add_blocks(plan.observed, {fmt::format("amplitude_p{:02}", percent), "m", description},
+               {fmt::format("angle_amplitude_p{:02}", percent), "rad", description}, blocks);
+  }
   blocks.push_back(scalar("missing", "1", "samples without an amplitude here"));
 }
 

@@ -50,7 +50,8 @@ class ResponseTable {
   void add_place(const RowPlace& place, std::vector<double>& rows) const;
 
   results::TableLayout layout_;
-  std::size_t width_ = 0, amplitudes_ = 0, sliders_ = 0;
+  std::size_t width_ = 0, amplitudes_ = 0;
+  std::vector<Index> sliders_;  ///< in the order of the columns
   bool has_direction_ = false, has_fundamental_ = false;
 };
 
@@ -81,6 +82,7 @@ class WaveformTable {
  private:
   results::TableLayout layout_;
   std::vector<Observed> observed_;
+  std::vector<Index> sliders_;  ///< in the order of the columns
   bool has_direction_ = false;
   std::size_t width_ = 0;
 };

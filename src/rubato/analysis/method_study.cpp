@@ -223,13 +223,16 @@ class MethodStudy {
                            const std::vector<std::vector<double>>& columns) {
     std::vector<std::string> labels{"exact"};
     labels.insert(labels.end(), names.begin(), names.end());
+    const std::string unit = plan_.observed.is_rotation ? "rad" : "m";
+    const std::string motion = plan_.observed.is_rotation ? "rotation" : "displacement";
     const auto rows =
         context_.sink.open({name_,
                             table,
                             "time",
                             {scalar("time", "s", "time"),
-                             {"position", "m", "displacement of " + plan_.observed.label, "method", labels},
-                             {"difference", "m", "displacement less the exact one", "compared_method", names}},
+                             {plan_.observed.is_rotation ? "angle" : "position", unit,
+                              motion + " of " + plan_.observed.label, "method", labels},
+                             {"difference", unit, motion + " less the exact one", "compared_method", names}},
                             std::move(attributes)});
     std::size_t count = exact.size();
     for (const auto& column : columns) count = std::min(count, column.size() + 1);

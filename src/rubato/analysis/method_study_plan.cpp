@@ -106,8 +106,8 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
   if (std::abs(count - std::round(count)) > 1e-9 * count)
     throw InvalidInput(study.step.where, fmt::format("{}the duration {} s must be a multiple of the step {} s", title,
                                                      plan.duration, plan.step));
-  plan.observed =
-      study.observe ? observed_of(*study.observe, system) : Observed{system.coordinates().front(), 0, ground};
+  plan.observed = study.observe ? observed_of(*study.observe, system)
+                                : Observed{system.coordinates().front(), 0, ground, system.is_rotation(0)};
   if (study.methods.empty())
     take_all_methods(plan, system);
   else

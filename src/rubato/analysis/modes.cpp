@@ -1,4 +1,5 @@
 #include <rubato/analysis/modes.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
 
 #include <fmt/format.h>
@@ -42,13 +43,14 @@ results::TableLayout layout_of(const std::string& name, const ModesPlan& plan, b
        scalar("eigenvalue_real", "1/s", "the free motion is Re(shape exp(eigenvalue t))"),
        scalar("eigenvalue_imaginary", "rad/s", "angular frequency of the damped motion")},
       {{"type", "modes"}, {"normalisation", "conj(shape)^T M shape = 1; the largest entry is real and positive"}}};
-  std::vector<std::string> labels;
-  for (const auto& observed : plan.observed) labels.push_back(observed.label);
-  if (labels.empty()) return layout;
-  layout.blocks.push_back({"shape", "1/sqrt(kg)", "shape, with a modal mass of 1 kg", "coordinate", labels});
+  // With q = shape * (modal coordinate): the latter in m sqrt(kg), for displacements and rotations alike.
+  add_blocks(plan.observed, {"shape", "1/sqrt(kg)", "shape, with a modal mass of 1"},
+             {"angle_shape", "rad/(m sqrt(kg))", "shape of the rotations, on the scale of the displacements"},
+             layout.blocks);
   if (is_complex)
-    layout.blocks.push_back(
-        {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead", "coordinate", labels});
+    add_blocks(plan.observed, {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead"},
+               {"angle_shape_imaginary", "rad/(m sqrt(kg))", "imaginary part of the shape of the rotations"},
+               layout.blocks);
   return layout;
 }
 
@@ -109,12 +111,7 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
                                      "modes, {}",
                                      title, count, n, n / 3));
   }
-  if (description.observe) {
-    for (const auto& observation : *description.observe) plan.observed.push_back(observed_of(observation, system));
-  } else {
-    for (Index i = 0; i < n; ++i)
-      plan.observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground});
-  }
+  plan.observed = observed_or_all(description.observe, system);
   return plan;
 }
 

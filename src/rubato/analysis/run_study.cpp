@@ -5,6 +5,7 @@
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>
 
@@ -105,6 +106,12 @@ struct Check {
     return {"method study: errors, orders and curves of each method", 1e7};
   }
 
+  AnalysisOutline operator()(const model::StaticDescription& equilibrium) const {
+    (void)equilibrium_of(analysis.name, analysis.where, equilibrium, input.system);
+    (void)observed_or_all(equilibrium.observe, input.system);
+    return {"static equilibrium", 100.0 * static_cast<double>(input.system.size())};
+  }
+
   AnalysisOutline operator()(const model::ModesDescription& modes) const {
     return outline(plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters), input.system);
   }
@@ -135,6 +142,10 @@ struct Run {
 
   RunReport operator()(const model::MethodStudyDescription& study) const {
     return run_method_study(analysis.name, study, input.system, input.parameters, context);
+  }
+
+  RunReport operator()(const model::StaticDescription& equilibrium) const {
+    return run_static(analysis.name, analysis.where, equilibrium, input.system, context);
   }
 
   RunReport operator()(const model::ModesDescription& modes) const {

@@ -22,7 +22,7 @@ class TransientObserver final : public integrate::Observer {
         context_(context),
         ledger_(system),
         interpolation_(system),
-        between_(system.start()),
+        between_(plan.start),
         steps_a_report_(system.size() > 1000 ? 1 : 256) {}
 
   void start(const system::State& state) {
@@ -140,7 +140,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   const auto stepper = integrate::make_stepper(plan.method, system);
   TransientRecorder recorder(name, plan, system, context.sink);
   TransientObserver observer(plan, system, recorder, context);
-  system::State state = integrate::consistent_start(system, system.start());
+  system::State state = integrate::consistent_start(system, plan.start);
   RunReport run;
   integrate::MarchReport report;
   if (plan.automatic)

@@ -1,3 +1,4 @@
+#include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
@@ -99,6 +100,17 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
   }
 }
 
+system::State static_start(const std::string& name, const Location& where, const model::StaticDescription& description,
+                           const system::LocallyNonlinear& system) {
+  const Vector& given = system.start().q;
+  for (Index i = 0; i < given.size(); ++i)
+    if (given[i] != 0.0)
+      throw InvalidInput(where, fmt::format("analysis \"{}\": initial = \"static\" finds the positions, and coordinate "
+                                            "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
+                                            name, system.coordinates()[static_cast<std::size_t>(i)]));
+  return equilibrium_of(name, where, description, system).state;
+}
+
 }  // namespace
 
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters) {
@@ -122,8 +134,27 @@ Observed observed_of(const model::ObservationDescription& description, const sys
                        fmt::format("observe names \"{}\", which is no coordinate{}{}", name, suggestion(name, known),
                                    lacks_spaces ? "; a difference is written with spaces, \"a - b\"" : ""));
   };
-  if (description.second.empty()) return {description.first, index_of(description.first), ground};
-  return {description.first + " - " + description.second, index_of(description.first), index_of(description.second)};
+  const Index first = index_of(description.first);
+  if (description.second.empty()) return {description.first, first, ground, system.is_rotation(first)};
+  const Index second = index_of(description.second);
+  if (system.is_rotation(first) != system.is_rotation(second))
+    throw InvalidInput(description.where,
+                       fmt::format("observe: \"{} - {}\" is the difference of a displacement [m] and "
+                                   "a rotation [rad]",
+                                   description.first, description.second));
+  return {description.first + " - " + description.second, first, second, system.is_rotation(first)};
+}
+
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::LocallyNonlinear& system) {
+  std::vector<Observed> observed;
+  if (wanted)
+    for (const auto& observation : *wanted) observed.push_back(observed_of(observation, system));
+  else
+    for (Index i = 0; i < system.size(); ++i)
+      observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+  std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
+  return observed;
 }
 
 TransientPlan plan_transient(const std::string& name, const Location& where,
@@ -134,13 +165,15 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan.method = method_of(description.method, parameters);
   plan.duration = positive(description.duration, parameters, title + "duration", where);
   plan.energy = description.energy;
+  plan.start = system.start();
+  if (description.initial) plan.start = static_start(name, where, *description.initial, system);
   const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
   if (is_exact && (description.step || description.automatic_step))
     throw InvalidInput(place(description.step ? description.step->where : description.automatic_step->where, where),
                        title + "the method exact takes no step; remove the key, or choose another method");
   if (description.automatic_step) {
-    plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, parameters,
-                                         plan.duration, description.allow_unstable);
+    plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, plan.start,
+                                         parameters, plan.duration, description.allow_unstable);
   } else if (!is_exact) {
     if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
     plan.step = positive(*description.step, parameters, title + "step", where);
@@ -156,12 +189,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);
-  if (description.observe) {
-    for (const auto& observation : *description.observe) plan.observed.push_back(observed_of(observation, system));
-  } else {
-    for (Index i = 0; i < system.size(); ++i)
-      plan.observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground});
-  }
+  plan.observed = observed_or_all(description.observe, system);
   return plan;
 }
 

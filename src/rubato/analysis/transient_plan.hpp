@@ -15,7 +15,8 @@ namespace rubato::analysis {
 struct Observed {
   std::string label;
   Index first = 0;
-  Index second = ground;  ///< ground: `first` alone
+  Index second = ground;     ///< ground: `first` alone
+  bool is_rotation = false;  ///< in radians
 
   double of(const Vector& x) const { return second == ground ? x[first] : x[first] - x[second]; }
 };
@@ -23,7 +24,8 @@ struct Observed {
 /// A transient with all its values: what the description says, evaluated and found possible.
 struct TransientPlan {
   integrate::Method method;
-  double step = 0.0;  ///< [s]; 0 for `exact` and for an automatic step
+  system::State start;  ///< that of the system, or of equilibrium
+  double step = 0.0;    ///< [s]; 0 for `exact` and for an automatic step
   std::optional<AutomaticStep> automatic;
   double duration = 0.0;  ///< [s]
   std::vector<Observed> observed;
@@ -40,6 +42,10 @@ integrate::Method method_of(const model::MethodDescription& description, const n
 
 /// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
 Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system);
+
+/// What is asked for, or every coordinate: displacements, then rotations.
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::LocallyNonlinear& system);
 
 /// Evaluates a description and checks that it can run: values in their ranges, names known, tables that reach over the
 /// whole run, and a step below the stability limit of the model unless `allow_unstable`. Throws InvalidInput.

@@ -15,7 +15,8 @@ Attributes attributes_of(const TransientPlan& plan, const system::LocallyNonline
   attributes.emplace_back("duration", fmt::format("{} s", plan.duration));
   if (system.slider_count() > 0) {
     std::vector<double> stiffness, limit;
-    for (const auto& slider : system.sliders()) {
+    for (const Index i : SliderBlocks(system).order()) {
+      const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
       stiffness.push_back(slider.stiffness);
       limit.push_back(slider.limit);
     }
@@ -33,21 +34,12 @@ results::Block scalar(const std::string& variable, const std::string& descriptio
 
 TransientRecorder::TransientRecorder(const std::string& name, const TransientPlan& plan,
                                      const system::LocallyNonlinear& system, results::Sink& sink)
-    : system_(system), observed_(plan.observed), equilibrium_(system), acceleration_(system.size()) {
+    : system_(system), observed_(plan.observed), sliders_(system), equilibrium_(system), acceleration_(system.size()) {
+  using Quantity = ObservedBlocks::Quantity;
   const results::Block time{"time", "s", "time", "", {}};
-  std::vector<std::string> labels, sliders;
-  for (const auto& observed : observed_) labels.push_back(observed.label);
-  for (const auto& slider : system.sliders()) sliders.push_back(slider.name);
   results::TableLayout layout{name, "", "time", {time}, attributes_of(plan, system)};
-  if (!labels.empty()) {
-    layout.blocks.push_back({"position", "m", "displacement of each coordinate", "coordinate", labels});
-    layout.blocks.push_back({"velocity", "m/s", "velocity of each coordinate", "coordinate", labels});
-    layout.blocks.push_back({"acceleration", "m/s2", "acceleration of equilibrium", "coordinate", labels});
-  }
-  if (!sliders.empty()) {
-    layout.blocks.push_back({"force", "N", "slider force; -force acts on the first coordinate", "slider", sliders});
-    layout.blocks.push_back({"slip", "m", "slip, u - force/kT", "slider", sliders});
-  }
+  observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
+  sliders_.add(layout);
   rows_ = sink.open(layout);
   if (plan.energy)
     energy_rows_ = sink.open({name,
@@ -66,12 +58,8 @@ void TransientRecorder::record(const system::State& state, const Energy* energy)
   equilibrium_(state, acceleration_);
   row_.clear();
   row_.push_back(state.t);
-  for (const Vector* x : {&state.q, &state.v, static_cast<const Vector*>(&acceleration_)})
-    for (const Observed& observed : observed_) row_.push_back(observed.of(*x));
-  for (Index i = 0; i < system_.slider_count(); ++i) row_.push_back(state.slider_force[i]);
-  for (Index i = 0; i < system_.slider_count(); ++i)
-    row_.push_back(system_.relative_displacement(i, state.q) -
-                   state.slider_force[i] / system_.sliders()[static_cast<std::size_t>(i)].stiffness);
+  observed_.append({&state.q, &state.v, &acceleration_}, row_);
+  sliders_.append(state, row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;

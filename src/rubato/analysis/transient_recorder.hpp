@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/energy_ledger.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 
@@ -24,7 +25,8 @@ class TransientRecorder {
 
  private:
   const system::LocallyNonlinear& system_;
-  std::vector<Observed> observed_;
+  ObservedBlocks observed_;
+  SliderBlocks sliders_;
   system::EquilibriumAcceleration equilibrium_;
   Vector acceleration_;
   std::vector<double> row_;

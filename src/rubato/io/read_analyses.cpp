@@ -88,6 +88,17 @@ OutputDescription read_output(TomlReader& reader) {
   return output;
 }
 
+/// The [[displacement]]s that are held; all of them unless listed.
+StaticDescription read_static(TomlReader& reader) {
+  StaticDescription equilibrium;
+  std::vector<Location> places;
+  if (const auto names = reader.optional_texts("displacements", &places)) {
+    equilibrium.displacements.emplace();
+    for (std::size_t i = 0; i < names->size(); ++i) equilibrium.displacements->push_back({(*names)[i], "", places[i]});
+  }
+  return equilibrium;
+}
+
 TransientDescription read_transient(TomlReader& reader) {
   TransientDescription transient;
   if (const toml::node* method = reader.node("method")) transient.method = to_method(reader, *method, "method");
@@ -102,6 +113,11 @@ TransientDescription read_transient(TomlReader& reader) {
   transient.observe = read_observe(reader);
   transient.energy = reader.optional_bool("energy").value_or(true);
   transient.allow_unstable = reader.optional_bool("allow_unstable").value_or(false);
+  if (reader.optional_word("initial", {"given", "static"}) == "static")
+    transient.initial = read_static(reader);
+  else if (reader.has("displacements"))
+    throw InvalidInput(reader.where("displacements"),
+                       reader.what() + ": displacements are held in the static start; add initial = \"static\"");
   return transient;
 }
 
@@ -131,8 +147,8 @@ ModesDescription read_modes(TomlReader& reader) {
 }  // namespace
 
 std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
-  const std::vector<std::string> known{"transient", "method_study", "modes", "frequency_response", "damper_curve"};
-  const std::vector<std::string> planned{"static"};
+  const std::vector<std::string> known{"transient",          "method_study", "modes",
+                                       "frequency_response", "damper_curve", "static"};
   std::vector<AnalysisDescription> analyses;
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
@@ -152,11 +168,6 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
         throw InvalidInput(reader.where("name"), fmt::format("two analyses are called \"{}\"; the first is on line {}",
                                                              analysis.name, other.where.line));
     const std::string type = reader.text("type");
-    if (std::find(planned.begin(), planned.end(), type) != planned.end())
-      throw InvalidInput(reader.where("type"),
-                         fmt::format("analysis \"{}\": the type \"{}\" is not available in this version; "
-                                     "available: transient, method_study, modes, frequency_response, damper_curve",
-                                     analysis.name, type));
     (void)reader.optional_word("type", known);
     if (type == "transient")
       analysis.task = read_transient(reader);
@@ -166,7 +177,11 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
       analysis.task = read_frequency_response(reader, folder);
     else if (type == "damper_curve")
       analysis.task = read_damper_curve(reader, folder);
-    else
+    else if (type == "static") {
+      StaticDescription equilibrium = read_static(reader);
+      equilibrium.observe = read_observe(reader);
+      analysis.task = equilibrium;
+    } else
       analysis.task = read_method_study(reader);
     reader.finish();
     analyses.push_back(std::move(analysis));

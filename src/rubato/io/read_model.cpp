@@ -178,11 +178,28 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     ForceDescription force;
     force.on = reader.name("on", &force.where);
     reader.rename(fmt::format("the force on \"{}\"", force.on));
+    if (reader.has("held")) {
+      reader.refuse_beside("held",
+                           {"amplitude", "expression", "table", "angular_frequency", "frequency", "phase", "beyond"});
+      model.held_forces.push_back({force.on, reader.quantity("held"), force.where});
+      reader.finish();
+      continue;
+    }
     force.law = read_law(reader, folder);
     reader.finish();
     model.forces.push_back(std::move(force));
   }
+  for (TomlReader& reader : root.tables("distributed_force")) {
+    DistributedForceDescription force;
+    force.on = reader.name("on", &force.where);
+    reader.rename(fmt::format("the distributed force on \"{}\"", force.on));
+    force.direction = reader.optional_quantities("direction").value_or(std::vector<Quantity>{});
+    force.law = read_law(reader, folder);
+    reader.finish();
+    model.distributed_forces.push_back(std::move(force));
+  }
   model.base_motion = read_base_motion(root, folder);
+  read_structure(root, folder, model);
   return model;
 }
 

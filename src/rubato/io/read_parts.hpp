@@ -10,6 +10,12 @@ namespace rubato::io {
 /// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
 model::ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder);
 
+/// [[node]], [[beam]] ... [[support]], [[displacement]] and [gravity].
+void read_structure(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
+
+/// [nodes] and [beams], which name CSV files, added to those of the study.
+void read_mesh(TomlReader& root, const std::filesystem::path& folder, model::StructureDescription& structure);
+
 /// [[analysis]]
 std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder);
 

@@ -30,13 +30,12 @@ std::string syntax_hint(std::string_view description) {
 
 /// Tables of the study language that this version does not read.
 void refuse_planned_tables(const toml::table& table, const TomlReader& root) {
-  const std::vector<std::string> planned{"node",         "material", "section", "beam",   "support",
-                                         "displacement", "body",     "joint",   "gravity"};
+  const std::vector<std::string> planned{"body", "joint"};
   for (const auto& [key, value] : table)
     if (std::find(planned.begin(), planned.end(), key.str()) != planned.end())
       throw InvalidInput(root.location(key),
-                         fmt::format("[[{}]] is not available in this version, which reads coordinates, springs, "
-                                     "dampers, sliders, forces and [matrices]",
+                         fmt::format("[[{}]] is not available in this version, which reads coordinates, nodes, beams, "
+                                     "springs, dampers, sliders, forces and [matrices]",
                                      key.str()));
 }
 

@@ -32,6 +32,12 @@ class Builder {
     for (const ForceDescription& force : description_.forces)
       model_.forces.push_back(
           {find(force.on, force.where, "a force is on"), law(force.law, fmt::format("the force on \"{}\"", force.on))});
+    for (const HeldDescription& held : description_.held_forces)
+      model_.held_forces.push_back({find(held.on, held.where, "a force is on"),
+                                    number(held.value, fmt::format("the force on \"{}\": held", held.on))});
+    for (const DistributedForceDescription& force : description_.distributed_forces) take_distributed_force(force);
+    take_displacements();
+    if (description_.gravity) take_gravity(*description_.gravity);
     if (description_.base_motion) take_base_motion(*description_.base_motion);
     return std::move(model_);
   }
@@ -90,8 +96,9 @@ class Builder {
   }
 
   void take_structure() {
-    BuiltStructure built = build_structure(description_.structure, parameters_, model_.size());
-    const Index before = model_.size(), n = before + static_cast<Index>(built.coordinates.size());
+    first_of_nodes_ = model_.size();
+    BuiltStructure built = build_structure(description_.structure, parameters_, first_of_nodes_);
+    const Index before = first_of_nodes_, n = before + static_cast<Index>(built.coordinates.size());
     for (Vector* values : {&model_.mass, &model_.position, &model_.velocity}) {
       values->conservativeResize(n);
       values->tail(n - before).setZero();
@@ -110,6 +117,7 @@ class Builder {
     }
     model_.structure = std::move(built.structure);
     fixed_ = std::move(built.fixed);
+    lines_ = std::move(built.lines);
   }
 
   SparseMatrix to_sparse(const MatrixDescription& matrix, int size) const {
@@ -323,6 +331,51 @@ class Builder {
     }
   }
 
+  void take_distributed_force(const DistributedForceDescription& description) {
+    const std::string part = fmt::format("the distributed force on \"{}\"", description.on);
+    const auto found =
+        std::find_if(lines_.begin(), lines_.end(), [&](const NamedLine& line) { return line.name == description.on; });
+    if (found == lines_.end()) {
+      std::vector<std::string> names;
+      for (const NamedLine& line : lines_) names.push_back(line.name);
+      throw InvalidInput(description.where,
+                         fmt::format("a distributed force is on \"{}\", which is the name of no beam or truss{}",
+                                     description.on, suggestion(description.on, names)));
+    }
+    const auto wanted = static_cast<std::size_t>(model_.structure.dimension);
+    if (description.direction.size() != wanted)
+      throw InvalidInput(description.where, fmt::format("{}: direction takes {} numbers, as the positions of nodes do, "
+                                                        "got {}",
+                                                        part, wanted, description.direction.size()));
+    DistributedForce force{found->first, found->count, Axis::Zero(), law(description.law, part)};
+    for (std::size_t i = 0; i < wanted; ++i)
+      force.direction[static_cast<Index>(i)] = number(description.direction[i], part + ": direction");
+    model_.distributed_forces.push_back(std::move(force));
+  }
+
+  void take_displacements() {
+    for (const HeldDescription& held : description_.displacements) {
+      const Index place = find(held.on, held.where, "a displacement is of");
+      for (const Held& other : model_.held_displacements)
+        if (other.coordinate == place)
+          throw InvalidInput(held.where, fmt::format("\"{}\" has two displacements", held.on));
+      model_.held_displacements.push_back(
+          {place, number(held.value, fmt::format("the displacement of \"{}\": value", held.on))});
+    }
+  }
+
+  void take_gravity(const GravityDescription& gravity) {
+    if (model_.structure.is_empty())
+      throw InvalidInput(gravity.where, "[gravity] acts on nodes, and there are none; give a coordinate a [[force]]");
+    const auto wanted = static_cast<std::size_t>(model_.structure.dimension);
+    if (gravity.acceleration.size() != wanted)
+      throw InvalidInput(gravity.where, fmt::format("[gravity]: acceleration takes {} numbers, as the positions of "
+                                                    "nodes do, got {}",
+                                                    wanted, gravity.acceleration.size()));
+    for (std::size_t i = 0; i < wanted; ++i)
+      model_.gravity[static_cast<Index>(i)] = number(gravity.acceleration[i], "[gravity]: acceleration");
+  }
+
   TimeLaw law(const TimeLawDescription& description, const std::string& part) const {
     if (const auto* harmonic = std::get_if<HarmonicDescription>(&description)) {
       const std::string key = harmonic->frequency_in_hertz ? "frequency" : "angular_frequency";
@@ -365,6 +418,7 @@ class Builder {
       }
     }
     motion.direction = Vector::Ones(model_.size());
+    if (!model_.structure.is_empty()) return take_direction_of_nodes(description, std::move(motion));
     if (!description.direction.empty()) {
       motion.direction.setZero();
       take_by_name(description.direction, "[base_motion]: direction", motion.direction);
@@ -372,12 +426,38 @@ class Builder {
     model_.base_motion = motion;
   }
 
+  /// With nodes: `x`, `y` and `z` are the translation of the ground, other names those of coordinates.
+  void take_direction_of_nodes(const BaseMotionDescription& description, BaseMotion motion) {
+    motion.direction.setZero();
+    if (description.direction.empty())
+      throw InvalidInput(description.where,
+                         "[base_motion]: with nodes it needs the direction in which the ground moves, such as "
+                         "direction = { x = 1.0 }");
+    std::vector<std::pair<std::string, Quantity>> by_coordinate;
+    for (const auto& [name, value] : description.direction) {
+      const std::size_t axis = name == "x" ? 0 : name == "y" ? 1 : name == "z" ? 2 : 3;
+      if (axis < static_cast<std::size_t>(model_.structure.dimension) && places_.count(name) == 0)
+        motion.translation[static_cast<Index>(axis)] = number(value, "[base_motion]: direction of " + name);
+      else
+        by_coordinate.emplace_back(name, value);
+    }
+    take_by_name(by_coordinate, "[base_motion]: direction", motion.direction);
+    for (const auto& [name, value] : by_coordinate)
+      if (places_.at(name) >= first_of_nodes_)
+        throw InvalidInput(value.where, fmt::format("[base_motion]: direction names \"{}\"; the ground moves all nodes "
+                                                    "alike, by x, y and z",
+                                                    name));
+    model_.base_motion = motion;
+  }
+
   const ModelDescription& description_;
   const Parameters& parameters_;
   NegativeLoad negative_load_;
   Model model_;
+  Index first_of_nodes_ = 0;
   std::unordered_map<std::string, Index> places_;
   std::unordered_set<std::string> fixed_;
+  std::vector<NamedLine> lines_;
 };
 
 }  // namespace

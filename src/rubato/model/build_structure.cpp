@@ -181,6 +181,12 @@ class StructureBuilder {
                              : fmt::format("{} \"{}\"", kind, line.name);
   }
 
+  void add_name(const LineDescription& line, std::size_t count) {
+    if (line.name.empty()) return;
+    lines_.add(line.name, line.where, 0);
+    built_.lines.push_back({line.name, built_.structure.elements.size(), count});
+  }
+
   /// The ends of a line, which must be two nodes apart.
   std::array<Index, 2> ends_of(const LineDescription& line, const std::string& part) const {
     std::array<Index, 2> ends{};
@@ -221,6 +227,7 @@ class StructureBuilder {
   }
 
   void take_beam(const BeamDescription& beam) {
+    add_name(beam, static_cast<std::size_t>(std::max(beam.elements, 1)));
     const std::string part = part_of(beam, "beam");
     const std::array<Index, 2> ends = ends_of(beam, part);
     Section section{};
@@ -328,6 +335,7 @@ class StructureBuilder {
   }
 
   void take_truss(const TrussDescription& truss) {
+    add_name(truss, 1);
     const std::string part = part_of(truss, "truss");
     const std::array<Index, 2> ends = ends_of(truss, part);
     Section unused{};
@@ -410,6 +418,7 @@ class StructureBuilder {
   ByName<Index> nodes_{"node"};
   ByName<Material> materials_{"material"};
   ByName<Section> sections_{"section"};
+  ByName<int> lines_{"element"};  // beams and trusses that have a name
   std::vector<NodeState> states_;
 };
 

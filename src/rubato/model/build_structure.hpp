@@ -17,10 +17,17 @@ struct NodeCoordinate {
   double mass = 0.0;  ///< point masses [kg], or inertias [kg m2]
 };
 
+/// A beam or truss that has a name, and its elements.
+struct NamedLine {
+  std::string name;
+  std::size_t first = 0, count = 0;
+};
+
 struct BuiltStructure {
   Structure structure;
   std::vector<NodeCoordinate> coordinates;  ///< in the order of the nodes; the first is coordinate `offset`
   std::unordered_set<std::string> fixed;    ///< names of those held by supports
+  std::vector<NamedLine> lines;
 };
 
 /// Evaluates and checks nodes, elements, masses and supports. A degree of freedom exists where something gives it an

@@ -105,6 +105,27 @@ struct ForceDescription {
   Location where;
 };
 
+/// A force per length that is the same all along a beam or truss, however many elements divide it.
+struct DistributedForceDescription {
+  std::string on;                   ///< the name of a beam or truss
+  std::vector<Quantity> direction;  ///< along x and y; along x, y and z in space [-]; its length multiplies the law
+  TimeLawDescription law;           ///< [N/m]
+  Location where;
+};
+
+/// A force or, with nodes, a displacement that is held in the static start and released in the transient.
+struct HeldDescription {
+  std::string on;  ///< a coordinate
+  Quantity value;  ///< [N] or [m]; [N m] or [rad] of a rotation
+  Location where;
+};
+
+/// Acts on elements and masses of nodes, in their translations.
+struct GravityDescription {
+  std::vector<Quantity> acceleration;  ///< along x and y; along x, y and z in space [m/s2]
+  Location where;
+};
+
 /// The ground moves in the direction of `direction`; coordinates are then relative to it, and the load is
 /// -M direction * acceleration(t).
 struct BaseMotionDescription {
@@ -146,6 +167,9 @@ struct ModelDescription {
   DampingDescription damping;
   std::vector<SliderDescription> sliders;
   std::vector<ForceDescription> forces;
+  std::vector<DistributedForceDescription> distributed_forces;
+  std::vector<HeldDescription> held_forces, displacements;
+  std::optional<GravityDescription> gravity;
   std::optional<BaseMotionDescription> base_motion;
   Location where;
 };
@@ -173,6 +197,12 @@ struct OutputDescription {
   Location where;
 };
 
+/// The state of equilibrium under the loads just before t = 0, held forces and held displacements.
+struct StaticDescription {
+  std::optional<std::vector<ObservationDescription>> observe;        ///< all coordinates unless given
+  std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
+};
+
 /// A step that chooses itself: step = { tolerance = ... }.
 struct StepDescription {
   Quantity tolerance;      ///< [-]
@@ -188,6 +218,7 @@ struct StepDescription {
 };
 
 struct TransientDescription {
+  std::optional<StaticDescription> initial;  ///< starts from equilibrium; the `observe` in it is not used
   MethodDescription method;
   std::optional<Quantity> step;                   ///< [s]; not for `exact`
   std::optional<StepDescription> automatic_step;  ///< instead of `step`
@@ -312,7 +343,7 @@ struct DamperCurveDescription {
 struct AnalysisDescription {
   std::string name;
   std::variant<TransientDescription, MethodStudyDescription, ModesDescription, FrequencyResponseDescription,
-               DamperCurveDescription>
+               DamperCurveDescription, StaticDescription>
       task;
   Location where;
 };

@@ -33,9 +33,17 @@ struct Force {
   TimeLaw law;  ///< [N]
 };
 
+/// A force per length along elements of the structure that follow one another.
+struct DistributedForce {
+  std::size_t first = 0, count = 0;  ///< elements
+  Axis direction = Axis::Zero();     ///< [-]
+  TimeLaw law;                       ///< [N/m]
+};
+
 struct BaseMotion {
-  Vector direction;  ///< [n], dimensionless
-  TimeLaw law;       ///< acceleration of the ground [m/s2]
+  Vector direction;                 ///< of coordinates [n], dimensionless; 0 for those of nodes
+  TimeLaw law;                      ///< acceleration of the ground [m/s2]
+  Axis translation = Axis::Zero();  ///< share of the nodes' translations, of those that a support holds too [-]
 };
 
 struct FullMatrices {
@@ -54,6 +62,12 @@ struct RayleighCoefficients {
 
 using Damping = std::variant<std::monostate, ModalDampingRatios, RayleighCoefficients>;
 
+/// Held in the static start only.
+struct Held {
+  Index coordinate = 0;
+  double value = 0.0;  ///< [N] or [m]; [N m] or [rad] of a rotation
+};
+
 /// A structure of coordinates with values for everything: validated, immutable by convention once built.
 struct Model {
   std::vector<std::string> coordinates;  ///< names, [n]
@@ -66,6 +80,9 @@ struct Model {
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;
   std::vector<Force> forces;
+  std::vector<DistributedForce> distributed_forces;
+  std::vector<Held> held_forces, held_displacements;
+  Axis gravity = Axis::Zero();  ///< acts on the nodes [m/s2]
   std::optional<BaseMotion> base_motion;
 
   Index size() const { return static_cast<Index>(coordinates.size()); }

@@ -43,4 +43,20 @@ struct ElementEquations {
 /// The equations of an element of a structure. `equations` is overwritten; allocates nothing.
 void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations);
 
+/// Forces and moments on the degrees of freedom of an element under an even load: the integral of its shape functions,
+/// which make them the fixed-end forces. Places and axes as in ElementEquations.
+/// @param per_length  in the axes of the model [N/m]
+/// @param equations   overwritten
+Eigen::Matrix<double, 12, 1> even_load_of(const Structure& structure, const LineElement& element,
+                                          const Axis& per_length, ElementEquations& equations);
+
+/// Characteristic size of a structure for error measures (Cardona and Cassano 1991, appendix A-1) [m sqrt(kg)]:
+///
+///   l = sqrt(3 m box^2 / elements + J (pi/10)^2)
+///
+/// with m all translational mass (three components, also in the plane), box the diagonal of the bounding box of all
+/// nodes, held ones included, and J the sum of the point inertias. 0 without elements or extent.
+/// @param point_mass  masses and inertias by coordinate [n] [kg] or [kg m2]
+double reference_value(const Structure& structure, const Vector& point_mass);
+
 }  // namespace rubato::model

@@ -52,7 +52,9 @@ SparseMatrix from_triplets(Index n, const Triplets& entries) {
   return matrix;
 }
 
-void require_positive_definite(const SparseMatrix& mass, const std::vector<std::string>& names) {
+/// @param is_sum  of masses and elements, each of which has inertia in every motion of its own degrees of freedom: then
+///                the sum has it in every motion of all, and a factorisation would find nothing
+void require_positive_definite(const SparseMatrix& mass, const std::vector<std::string>& names, bool is_sum) {
   // The diagonal first: it names the coordinate.
   const Vector entries = mass.diagonal();
   for (Index i = 0; i < entries.size(); ++i)
@@ -61,6 +63,7 @@ void require_positive_definite(const SparseMatrix& mass, const std::vector<std::
           fmt::format("the mass matrix is singular: coordinate \"{}\" has the mass {}; give it one, or "
                       "remove it",
                       names[static_cast<std::size_t>(i)], entries[i]));
+  if (is_sum) return;
   const Eigen::SimplicialLLT<SparseMatrix> factor(mass);
   if (factor.info() != Eigen::Success)
     throw InvalidInput("the mass matrix is not positive definite: some motion of the coordinates has no mass");
@@ -106,18 +109,61 @@ SparseMatrix damping_matrix(const model::Damping& damping, const SparseMatrix& m
   return SparseMatrix(mass.rows(), mass.cols());
 }
 
+/// The forces that give every node the same acceleration, M times that motion, what supports hold included [n] [N].
+Vector inertia_of_nodes(const model::Model& model, const model::Axis& acceleration) {
+  Vector force = Vector::Zero(model.size());
+  model::ElementEquations equations;
+  const auto of_axis = [&](std::size_t axis) {
+    return model::is_rotation(axis) ? 0.0 : acceleration[static_cast<Index>(axis)];
+  };
+  for (const auto& element : model.structure.elements) {
+    model::equations_of(model.structure, element, equations);
+    for (int i = 0; i < equations.size; ++i) {
+      const Index row = equations.place[static_cast<std::size_t>(i)];
+      if (row == ground) continue;
+      for (int j = 0; j < equations.size; ++j)
+        force[row] += equations.mass(i, j) * of_axis(equations.axis[static_cast<std::size_t>(j)]);
+    }
+  }
+  for (const auto& places : model.structure.places)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (places[axis] != ground) force[places[axis]] += model.mass[places[axis]] * of_axis(axis);
+  return force;
+}
+
+LoadTerm term_of(const Vector& weights, model::TimeLaw law) {
+  LoadTerm term{{}, {}, std::move(law)};
+  for (Index i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0.0) continue;
+    term.rows.push_back(i);
+    term.weights.push_back(weights[i]);
+  }
+  return term;
+}
+
+Vector even_load(const model::Model& model, const model::DistributedForce& force) {
+  Vector load = Vector::Zero(model.size());
+  model::ElementEquations equations;
+  for (std::size_t e = force.first; e < force.first + force.count; ++e) {
+    const auto share = model::even_load_of(model.structure, model.structure.elements[e], force.direction, equations);
+    for (int i = 0; i < equations.size; ++i) {
+      const Index row = equations.place[static_cast<std::size_t>(i)];
+      if (row != ground) load[row] += share[i];
+    }
+  }
+  return load;
+}
+
 Loads loads_of(const model::Model& model, const SparseMatrix& mass) {
   std::vector<LoadTerm> terms;
   for (const auto& force : model.forces) terms.push_back({{force.coordinate}, {1.0}, force.law});
+  for (const auto& force : model.distributed_forces) terms.push_back(term_of(even_load(model, force), force.law));
+  if (!model.gravity.isZero(0.0))
+    terms.push_back(term_of(inertia_of_nodes(model, model.gravity), model::HarmonicLaw{1.0, 0.0, 0.0}));
   if (model.base_motion) {
-    const Vector inertia = mass * model.base_motion->direction;
-    LoadTerm term{{}, {}, model.base_motion->law};
-    for (Index i = 0; i < inertia.size(); ++i) {
-      if (inertia[i] == 0.0) continue;
-      term.rows.push_back(i);
-      term.weights.push_back(-inertia[i]);
-    }
-    terms.push_back(std::move(term));
+    Vector inertia = mass * model.base_motion->direction;
+    if (!model.structure.is_empty()) inertia += inertia_of_nodes(model, model.base_motion->translation);
+    terms.push_back(term_of(-inertia, model.base_motion->law));
   }
   return Loads(std::move(terms));
 }
@@ -138,7 +184,7 @@ LocallyNonlinear assemble(const model::Model& model) {
     parts.mass = from_triplets(n, mass);
     parts.stiffness = from_elements(n, model.springs, std::move(stiffness));
   }
-  require_positive_definite(parts.mass, model.coordinates);
+  require_positive_definite(parts.mass, model.coordinates, !model.matrices);
   parts.damping = damping_matrix(model.damping, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
@@ -148,6 +194,9 @@ LocallyNonlinear assemble(const model::Model& model) {
   parts.start.v = model.velocity;
   parts.coordinates = model.coordinates;
   parts.is_rotation = model.is_rotation;
+  parts.reference = model::reference_value(model.structure, model.mass);
+  parts.held_forces = model.held_forces;
+  parts.held_displacements = model.held_displacements;
   return LocallyNonlinear(std::move(parts));
 }
 

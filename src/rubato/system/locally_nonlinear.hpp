@@ -26,8 +26,9 @@ class LocallyNonlinear {
     State start;                           ///< t = 0; q, v of the model; sliders without force
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
     std::vector<char> is_rotation;         ///< [n]: in [rad] instead of [m]; may be empty: none is
-    /// Characteristic size of the model for error measures (integrate::reference_value) [m sqrt(kg)]; 0: it has none.
+    /// Characteristic size of the model for error measures (model::reference_value) [m sqrt(kg)]; 0: it has none.
     double reference = 0.0;
+    std::vector<model::Held> held_forces, held_displacements;  ///< in the static start only
   };
 
   explicit LocallyNonlinear(Parts parts);
@@ -41,6 +42,8 @@ class LocallyNonlinear {
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
+  const std::vector<model::Held>& held_forces() const { return parts_.held_forces; }
+  const std::vector<model::Held>& held_displacements() const { return parts_.held_displacements; }
   bool is_rotation(Index i) const {
     return !parts_.is_rotation.empty() && parts_.is_rotation[static_cast<std::size_t>(i)] != 0;
   }

@@ -90,11 +90,4 @@ EstimatorKind default_estimator(const Method& method, double tolerance);
 /// "inertia_jump", "local_error" or "embedded"
 std::string name_of(const EstimatorKind& kind);
 
-/// Reference value l = sqrt(qR^T M qR) of a structure (Cardona and Cassano 1991, appendix A-1): three translational
-/// components qR = box/sqrt(elements) on its lumped mass, also in the plane.
-/// @param box       diagonal of the bounding box of all points, those on the ground included [m]
-/// @param elements  number of elements
-/// @param mass      total translational mass [kg]
-double reference_value(double box, double elements, double mass);
-
 }  // namespace rubato::integrate

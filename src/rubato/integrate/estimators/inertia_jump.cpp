@@ -62,6 +62,4 @@ std::unique_ptr<Estimator> make_inertia_jump(const InertiaJump& kind, const Gene
   return std::make_unique<InertiaJumpEstimator>(kind, method, system);
 }
 
-double reference_value(double box, double elements, double mass) { return box * std::sqrt(3.0 * mass / elements); }
-
 }  // namespace rubato::integrate

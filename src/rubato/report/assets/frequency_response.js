@@ -421,6 +421,11 @@ function write_frequency_response(chapter, analysis) {
     add_section(chapter, "Responses", family_figure(table, sizes, {
       caption: `Responses in the steady state. ${kinds}${limits}`, linear, with_scale: true, height: 470}));
   }
+  const turns = variables_named(table, /^(angle_amplitude|angular_velocity_amplitude|angular_acceleration_amplitude|angle_rms|angle_mean|harmonic_?\d+_angle_amplitude)$/);
+  if (turns.length) {
+    add_section(chapter, "Rotations", family_figure(table, turns, {
+      caption: `Rotations in the steady state. Amplitude is half of peak to peak over a period.${limits}`, linear, with_scale: true, height: 470}));
+  }
   if (bands) {
     const figure = bands_figure(bands, quantity_label(table, table.curves.abscissa));
     if (figure) add_section(chapter, "Percentile bands", figure);
@@ -435,8 +440,8 @@ function write_frequency_response(chapter, analysis) {
     add_section(chapter, "Phase and mean", family_figure(table, angles, {
       caption: `Phases of the harmonics, A cos(kΩt + phase), and the mean of the motion.${limits}`, linear}));
   }
-  const sliders = variables_named(table, /^(slip_share|dissipated|offset)$/).filter((variable) => variable.dimension)
-    .sort((a, b) => ["slip_share", "dissipated", "offset"].indexOf(a.name) - ["slip_share", "dissipated", "offset"].indexOf(b.name));
+  const sliders = variables_named(table, /^(slip_share|dissipated|offset|moment_offset)$/).filter((variable) => variable.dimension)
+    .sort((a, b) => ["slip_share", "dissipated", "offset", "moment_offset"].indexOf(a.name) - ["slip_share", "dissipated", "offset", "moment_offset"].indexOf(b.name));
   if (sliders.length) {
     add_section(chapter, "Stick and slip", family_figure(table, sliders, {
       caption: "Sliders over a period: the share of it in which they slip, the work that friction dissipates, and the force that a slider " +

@@ -67,7 +67,9 @@ function write_waveforms(chapter, table) {
   const body = [];
   const force = variable_of(table, "force"), displacement = variable_of(table, "displacement");
   if (force && displacement && force.labels.length) body.push(loops_figure(table, force, displacement));
-  const motion = ["position", "velocity", "force", "displacement"].map((name) => variable_of(table, name))
+  const moment = variable_of(table, "moment"), angle = variable_of(table, "relative_angle");
+  if (moment && angle && moment.labels.length) body.push(loops_figure(table, moment, angle));
+  const motion = ["position", "angle", "velocity", "force", "displacement", "moment", "relative_angle"].map((name) => variable_of(table, name))
     .filter((variable) => variable && variable.labels.length);
   if (motion.length) body.push(waveforms_figure(table, motion));
   if (body.length) add_section(chapter, "Loops and waveforms", body);

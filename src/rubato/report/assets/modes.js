@@ -51,5 +51,9 @@ function write_modes(chapter, table) {
   const kept = {...table, variables: columns, overview: columns.map((variable) => table.overview[variable.index].map((column) => column.slice(0, most)))};
   const rest = table.rows > most ? ` The first ${most} of ${count_text(table.rows)} rows; the others are in the results file.` : "";
   add_section(chapter, "Modes", results_table(kept, `Natural frequencies and damping ratios.${rest}`, 7));
-  if (shapes.length && !table.is_envelope) add_section(chapter, "Mode shapes", shapes_figure(table, shapes));
+  if (table.is_envelope) return;
+  for (const [title, dimension] of [["Mode shapes", "coordinate"], ["Mode shapes: rotations", "rotation"]]) {
+    const parts = shapes.filter((variable) => (variable.dimension === "rotation") === (dimension === "rotation"));
+    if (parts.length) add_section(chapter, title, shapes_figure(table, parts));
+  }
 }

@@ -59,6 +59,11 @@ function phase_portrait(table, position, velocity) {
   });
 }
 
+/** Where the attributes tell of a slider: those with forces come first, then those with moments. */
+function place_of_slider(table, force, label) {
+  return force.name === "moment" ? (variable_of(table, "force")?.label_count ?? 0) + label : label;
+}
+
 /** The relative displacement of a slider's ends: kept in the results, or slip + force / stiffness. */
 function relative_displacement(table, force, label) {
   const columns = columns_of(table, 1);
@@ -66,19 +71,20 @@ function relative_displacement(table, force, label) {
   if (kept && kept.dimension === force.dimension) {
     return {title: "Relative displacement [m]", values: columns[kept.index][label]};
   }
-  const slip = variable_of(table, "slip");
-  const stiffness = (table.attributes.slider_stiffness ?? "").split(/[\s,]+/).map(Number)[label];
+  const turns = force.name === "moment";
+  const slip = variable_of(table, turns ? "slip_angle" : "slip");
+  const stiffness = (table.attributes.slider_stiffness ?? "").split(/[\s,]+/).map(Number)[place_of_slider(table, force, label)];
   if (stiffness > 0) {
     const forces = columns[force.index][label];
-    return {title: "Relative displacement [m]",
+    return {title: turns ? "Relative rotation [rad]" : "Relative displacement [m]",
             values: columns[slip.index][label].map((value, row) => value + forces[row] / stiffness)};
   }
-  return {title: "Slip [m]", values: columns[slip.index][label]};
+  return {title: turns ? "Slip [rad]" : "Slip [m]", values: columns[slip.index][label]};
 }
 
 /** The Coulomb limits of a slider, where the results tell them. */
-function limit_lines(table, label, values) {
-  const limit = (table.attributes.slider_limit ?? "").split(/[\s,]+/).map(Number)[label];
+function limit_lines(table, force, label, values) {
+  const limit = (table.attributes.slider_limit ?? "").split(/[\s,]+/).map(Number)[place_of_slider(table, force, label)];
   const [low, high] = padded_range([values]) ?? [0, 0];
   if (!(limit > 0)) return [];
   return [{type: "scatter", mode: "lines", x: [low, high, null, low, high], y: [limit, limit, null, -limit, -limit], name: "±μN",
@@ -96,7 +102,7 @@ function hysteresis_loops(table, force) {
     return make_figure({
       caption: `Hysteresis loop of ${force.labels[label]}. ${window_text(table)}${rest}`, height: 320, is_small: true,
       draw: () => ({
-        traces: [...limit_lines(table, label, displacement.values), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
+        traces: [...limit_lines(table, force, label, displacement.values), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
                   line: {...line_style(label), dash: "solid"}, showlegend: true}],
         layout: {xaxis: axis(displacement.title, {range: padded_range([displacement.values])}),
                  yaxis: axis(axis_label(force), {range: padded_range([y])})},
@@ -164,7 +170,8 @@ function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
   const of = (names) => names.map((name) => variable_of(table, name)).filter((variable) => variable && variable.labels.length);
   const motion = of(["position", "velocity", "acceleration"]);
-  const sliders = of(["force", "slip", "displacement"]);
+  const rotations = of(["angle", "angular_velocity", "angular_acceleration"]);
+  const sliders = of(["force", "slip", "displacement"]), hinges = of(["moment", "slip_angle"]);
   const ledger = analysis.tables.find((candidate) => candidate.name === "energy");
   if (table.rows === 0) {
     chapter.node.append(element("p", {class: "note"}, "It ended before its first row."));
@@ -174,6 +181,7 @@ function write_transient(chapter, analysis) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
     if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
   }
+  if (rotations.length) add_section(chapter, "Rotations", history_figure(table, rotations, "Rotations of the nodes"));
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const force = variable_of(table, "force");
@@ -181,13 +189,19 @@ function write_transient(chapter, analysis) {
       add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
     }
   }
+  if (hinges.length === 2) {
+    add_section(chapter, "Rotational sliders", history_figure(table, hinges, "Sliders between rotations: moment and slip"));
+    add_section(chapter, "Moments over rotations", hysteresis_loops(table, hinges[0]));
+  }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (table.key_numbers && motion.length + sliders.length) {
+  if (table.key_numbers && motion.length + rotations.length + sliders.length + hinges.length) {
     const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
       "last tenth of the duration. All rows count.";
     const numbers = [];
     if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
+    if (rotations.length) numbers.push(key_numbers(table, rotations, `Rotations of the nodes.${meaning}`));
     if (sliders.length) numbers.push(key_numbers(table, sliders, `Motion and force of the sliders.${meaning}`));
+    if (hinges.length) numbers.push(key_numbers(table, hinges, `Moment and slip of the sliders between rotations.${meaning}`));
     add_section(chapter, "Key numbers", numbers);
   }
 }
