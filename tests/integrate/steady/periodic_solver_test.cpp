@@ -2,6 +2,8 @@
 
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
+#include <rubato/core/error.hpp>
+
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -342,6 +344,15 @@ TEST(PeriodicSolver, FindsTheOrbitOfADamperThatOnlyItsContactsHold) {
   EXPECT_GT(response.dissipated.minCoeff(), 0.0);
   EXPECT_NEAR(response.input_work, response.viscous_work + response.dissipated.sum(), 1e-10 * response.input_work);
   EXPECT_LT(solver.state().q.norm(), 1e3 * response.amplitude.maxCoeff());
+}
+
+TEST(PeriodicSolver, RefusesPeriodsThatHoldTooManyNaturalOnes) {
+  const auto system = damper_model();
+  PeriodicSolver solver(system, {{{0}}, {1}, false});
+  Excitation slow = excitation_of(system);
+  slow.angular_frequency = 1e-7;
+  SteadyResponse response;
+  EXPECT_THROW(solver.solve(slow, SteadyStart::unloaded, response), InvalidInput);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace rubato::integrate {
@@ -71,7 +72,19 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
   const Index rigid = (modes.eigenvalues.array() == 0.0).count();
   if (m_ > 0) rigid_ = modes.shapes.leftCols(rigid);
+  fastest_ = std::sqrt(std::max(0.0, modes.eigenvalues.maxCoeff()));
   wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
+}
+
+// An orbit keeps its pieces, about pi w_n/w a period of the fastest motion, of some forty terms a coordinate.
+void PeriodicSolver::require_memory(const Excitation& excitation) const {
+  constexpr double most_bytes = 1e9, terms = 40.0;
+  const double pieces = std::numbers::pi * fastest_ / excitation.angular_frequency;
+  if (pieces * terms * static_cast<double>(n_ + m_) * sizeof(double) <= most_bytes) return;
+  throw InvalidInput(
+      fmt::format("a period of {:.4g} s holds {:.3g} of the fastest natural periods of the model, too many "
+                  "for solver = \"periodic\", which follows each; take solver = \"harmonic_balance\"",
+                  excitation.period(), fastest_ / excitation.angular_frequency));
 }
 
 void PeriodicSolver::forget() {
@@ -268,6 +281,7 @@ double PeriodicSolver::observed_size(const Vector& y) const {
 }
 
 void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) {
+  require_memory(excitation);
   forget_others(excitation);
   last_ = excitation;
   response.periods = 1;

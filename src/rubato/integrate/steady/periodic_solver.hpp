@@ -37,6 +37,8 @@ class PeriodicSolver final : public SteadySolver {
   /// Throws InvalidInput for more than 300 coordinates. The system must outlive the solver; its loads do not matter.
   PeriodicSolver(const system::LocallyNonlinear& system, SteadyRequest request, PeriodicOptions options = {});
 
+  /// Throws InvalidInput where a period is too long beside the fastest motion of the structure for its pieces to be
+  /// kept.
   void solve(const Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
   Waveform waveform(int points) const override;
   void forget() override;
@@ -60,6 +62,7 @@ class PeriodicSolver final : public SteadySolver {
   double residual(const Excitation& excitation);
   void factorise();
   void hold_rigid_motions();
+  void require_memory(const Excitation& excitation) const;
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
   bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
@@ -86,7 +89,8 @@ class PeriodicSolver final : public SteadySolver {
   Vector wanted_offset_, offset_shift_, offset_probe_,
       centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
-  Matrix rigid_;  // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
+  double fastest_ = 0.0;  // natural frequency without sliders [rad/s]
+  Matrix rigid_;          // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
   Eigen::PartialPivLU<Matrix> factors_;
   bool factors_are_of_orbit_ = false;
   bool near_factors_ = false;        // the last pass was made after a full step with these factors
