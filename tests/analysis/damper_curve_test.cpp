@@ -257,6 +257,14 @@ TEST(DamperCurve, OfRandomSamplesHasBandsAndAnOptimumOfEach) {
   EXPECT_LT(median, upper.height());
 }
 
+TEST(DamperCurve, IsDrawnAloneWhereNoOptimumIsWanted) {
+  const auto with = run(PreparedStudy(one_mass(usual))),
+             alone = run(PreparedStudy(one_mass(usual + "optimum = false\n")));
+  EXPECT_EQ(alone->rows(), with->rows());
+  EXPECT_EQ(alone->sink.tables.count("damper.optimum"), 0u);
+  EXPECT_THAT(alone->report.findings, IsEmpty());
+}
+
 TEST(DamperCurve, ResumesAfterTheLinesThatAreDone) {
   const PreparedStudy prepared(one_mass(usual + "sweep = { c = [0.05, 0.1, 0.2] }\n"));
   MemoryJournal whole;

@@ -27,7 +27,7 @@ class Tables {
     const bool is_random = plan.sweep.kind() == Sweep::Kind::random;
     if (!is_random && plan.objective == DamperCurvePlan::Objective::amplitude) linear_ = sink.open(layouts.linear());
     if (!is_random) peaks_ = sink.open(layouts.peaks());
-    if (plan.values.size() > 1) optimum_ = sink.open(layouts.optimum());
+    if (plan.has_optimum) optimum_ = sink.open(layouts.optimum());
     if (is_random) bands_ = sink.open(layouts.bands());
   }
 

@@ -183,7 +183,7 @@ DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTable
     tables.add_limits(keys, parameter, limits[0], limits[1], result.linear);
     count_value(value, before + static_cast<double>(i), result.counts);
   }
-  if (!result.is_whole || plan.values.size() < 2) return result;
+  if (!result.is_whole || !plan.has_optimum) return result;
 
   const double solved = family.solves();
   const auto optimum = find_optimum(family, plan.values, objectives, plan.sign());

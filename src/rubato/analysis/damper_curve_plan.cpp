@@ -161,6 +161,7 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
   plan_range(plan, description, input, title, where);
   plan_frequencies(plan, description, input, title, where);
   plan_objective(plan, description, input, title, where);
+  plan.has_optimum = description.optimum && plan.values.size() > 1;
   if (input.system.size() > integrate::largest_exact)
     throw InvalidInput(
         where,

@@ -25,6 +25,7 @@ struct DamperCurvePlan {
   Sweep sweep;                     ///< of the other parameters: a curve a line
   ParameterDependence dependence;
   Objective objective = Objective::amplitude;
+  bool has_optimum = true;  ///< whether it is wanted, and there are values to look between
   std::vector<Observed> observed = {};
   integrate::SteadyRequest request = {};
 

@@ -48,6 +48,7 @@ DamperCurveDescription read_damper_curve(TomlReader& reader, const std::filesyst
   task.objective = objective == "dissipated" ? DamperCurveDescription::Objective::dissipated
                                              : DamperCurveDescription::Objective::amplitude;
   task.objective_where = reader.where("objective");
+  task.optimum = reader.optional_bool("optimum").value_or(true);
   task.observe = read_observe(reader);
   return task;
 }

@@ -337,6 +337,7 @@ struct DamperCurveDescription {
   Location sweep_where;
   Objective objective = Objective::amplitude;
   Location objective_where;
+  bool optimum = true;                                         ///< refined, with what certifies it
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
 };
 
