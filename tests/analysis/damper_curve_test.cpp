@@ -129,8 +129,8 @@ TEST(DamperCurve, HasTheOptimumOfTheThesisWithItsCertificate) {
 }
 
 TEST(DamperCurve, IsAsHighForTheSameDamperOnASpinningRotor) {
-  // The load of the damper is m r speed^2 and the forces are its third engine order: at the best mass the load at the
-  // peak need not be the best constant one, but no load does better than that.
+  // The load of the damper is m r speed^2 and the forces are the third engine order. Where the amplitude A(w, N) has
+  // both derivatives zero, so has A(w, N(w, m)): at the mass whose load at that frequency is the best constant one.
   const auto rotor = run(example("rotor-speed"));
   EXPECT_NEAR(rotor->optimum("amplitude", "blade2"), 3.45279383277, 1e-7);
 }

@@ -79,7 +79,7 @@ class Tables {
     const std::size_t at = plan_.sweep.names().size();
     const double frequency = last_optimum_[at + 1], objective = last_optimum_[layouts_.objective()];
     return fmt::format("{} {:.9g} {} at {} = {:.9g}, angular_frequency = {:.9g} rad/s{}", what, objective,
-                       is_amplitude ? "m" : "J", plan_.parameter, last_optimum_[at], frequency, certificate());
+                       unit_of("objective"), plan_.parameter, last_optimum_[at], frequency, certificate());
   }
 
  private:
@@ -88,6 +88,12 @@ class Tables {
     if (!writer) return;
     for (std::size_t place = 0; place + width <= rows.size(); place += width)
       writer->append({rows.data() + place, width});
+  }
+
+  std::string unit_of(const std::string& variable) const {
+    const auto& blocks = layouts_.optimum().blocks;
+    return std::find_if(blocks.begin(), blocks.end(), [&](const auto& block) { return block.variable == variable; })
+        ->unit;
   }
 
   double of_optimum(const std::string& variable) const {
@@ -161,6 +167,9 @@ class Warnings {
     if (counts_.unconverged_samples > 0.0)
       warnings.push_back(fmt::format("{:.0f} of {:.0f} points solved did not converge: a peak may have been missed",
                                      counts_.unconverged_samples, counts_.solves));
+    if (counts_.without_optimum > 0.0)
+      warnings.push_back(fmt::format("{:.0f} of {} combinations have no optimum: no value of {} has a finite objective",
+                                     counts_.without_optimum, plan_.sweep.lines(), plan_.parameter));
     return warnings;
   }
 
@@ -228,8 +237,6 @@ class Lines {
     }
     return result;
   }
-
-  DamperPeaks& family() { return *families_.local(); }
 
  private:
   const DamperCurvePlan& plan_;
@@ -309,7 +316,9 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   for (std::size_t i = 0; i < point_statuses; ++i)
     if (i == 0 || counts.by_status[i] > 0.0)
       report.statistics.emplace_back(status_words()[i], fmt::format("{:.0f}", counts.by_status[i]));
-  report.warnings = Warnings(plan, input, counts, lines.family()).all();
+  const std::atomic<bool> never{false};  // an interrupt must not keep it from saying what was found
+  DamperPeaks witness(plan, input, solvers, never);
+  report.warnings = Warnings(plan, input, counts, witness).all();
   if (const std::string finding = tables.finding(); !finding.empty()) report.findings = {finding};
   return report;
 }
