@@ -105,8 +105,8 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
     const auto stepper = integrate::make_stepper(method, system);
     const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
     estimator->start(integrate::consistent_start(system, start));
-    const double first = plan.first > 0.0 ? plan.first : std::min(plan.largest, estimator->first_step());
-    step.expected_steps = std::ceil(duration / first);
+    const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
+    step.expected_steps = std::ceil(duration / (is_fixed ? plan.first : plan.largest));
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }
