@@ -23,7 +23,7 @@ std::string scene_of(const std::function<void(results::Sink&)>& fill, const Scen
     fill(sink);
   }
   const ResultsTables results(folder / "results.nc");
-  const std::string scene = scene_json(results.analyses().front(), extent);
+  const std::string scene = scene_json(read_scene(results.analyses().front(), extent));
   std::filesystem::remove_all(folder);
   return scene;
 }
@@ -31,7 +31,7 @@ std::string scene_of(const std::function<void(results::Sink&)>& fill, const Scen
 TEST(SceneJson, TellsWhereNodesAreAndWhatJoinsThem) {
   const std::string scene = scene_of(test::add_scene);
   EXPECT_THAT(scene, HasSubstr(R"("names":["a","b","c"],"position":[[0,0,1],[0,1,1],[0,0,0]])"));
-  EXPECT_THAT(scene, HasSubstr(R"("support":["clamped","free","free"],"lines":[[0,1],[1,2]],"kinds":null)"));
+  EXPECT_THAT(scene, HasSubstr(R"("support":["clamped","free","free"],"lines":[[0,1],[1,2]],"kinds":[])"));
   EXPECT_THAT(scene, HasSubstr(R"("is_absolute":false,"places":[[1,1,2,2,1,2],[0,1,0,1,5,5]])"));
 }
 

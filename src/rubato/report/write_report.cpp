@@ -50,7 +50,7 @@ std::string analysis_json(const AnalysisTables& analysis) {
     tables += (tables.empty() ? "" : ",") + digest_json(*table, analysis.attributes);
   }
   return fmt::format(R"({{"name":{},"attributes":{},"scene":{},"tables":[{}]}})", json_string(analysis.name),
-                     attributes_json(analysis.attributes), scene_json(analysis), tables);
+                     attributes_json(analysis.attributes), scene_json(read_scene(analysis)), tables);
 }
 
 /// Writes beside `file` and moves it there, so that a full disk leaves what was there before.
