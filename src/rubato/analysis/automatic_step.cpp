@@ -147,13 +147,11 @@ std::string summary(const AutomaticStep& step) {
 }
 
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length) {
-  std::vector<std::pair<std::string, std::string>> all{{"steps", std::to_string(report.march.steps)},
-                                                       {"rejected", std::to_string(report.rejected)},
-                                                       {"failed", std::to_string(report.failed)},
-                                                       {"events", std::to_string(report.events)},
-                                                       {"restarts", std::to_string(report.restarts)},
-                                                       {"solves", std::to_string(report.solves)},
-                                                       {"factorisations", std::to_string(report.factorisations)}};
+  std::vector<std::pair<std::string, std::string>> all{
+      {"steps", std::to_string(report.march.steps)},       {"rejected", std::to_string(report.rejected)},
+      {"failed", std::to_string(report.failed)},           {"events", std::to_string(report.events)},
+      {"event_tries", std::to_string(report.event_tries)}, {"restarts", std::to_string(report.restarts)},
+      {"solves", std::to_string(report.solves)},           {"factorisations", std::to_string(report.factorisations)}};
   if (report.march.steps > 0) {
     all.emplace_back("smallest_step", fmt::format("{:.6g} s", report.smallest_step));
     all.emplace_back("mean_step", fmt::format("{:.6g} s", length / static_cast<double>(report.march.steps)));
