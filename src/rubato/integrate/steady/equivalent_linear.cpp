@@ -10,7 +10,6 @@
 namespace rubato::integrate {
 namespace {
 
-using Complex = std::complex<double>;
 constexpr int most_rounds = 60;
 
 // Stiffness (real) and damping (imaginary) of a slider for u = amplitude cos(theta): the first harmonic of its loop.

@@ -51,6 +51,7 @@ struct HarmonicBalanceSolver::Implementation {
 
   void forget() {
     past.clear();
+    equations.front().forget();
     remembered_offsets = Vector::Zero(stiffness.size());
     count_wanted = 1;
     // The basis of the loads has grown with those before; what is kept of it would show in the last digits.
