@@ -10,6 +10,7 @@
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
 #include <rubato/report/write_report.hpp>
+#include <rubato/report/write_vtk.hpp>
 
 #include <fmt/format.h>
 
@@ -154,6 +155,20 @@ int conclude(const PreparedStudy& study, const std::vector<std::optional<RunRepo
   return status;
 }
 
+/// For ParaView. Returns false, and says why, where it was not written; the results are safe.
+bool write_motion(const std::filesystem::path& folder) {
+  try {
+    if (report::write_vtk(folder / "results.nc", folder / "vtk") == 0)
+      tell(
+          "--vtk: no analysis holds the motion of a whole structure (nodes, and all that is observed); nothing is "
+          "written");
+    return true;
+  } catch (const std::exception& fault) {
+    tell(fmt::format("error: the files for ParaView were not written: {}", fault.what()));
+    return false;
+  }
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -179,6 +194,7 @@ int run(const RunOptions& options) {
     std::fflush(nullptr);
     std::_Exit(exit_failed);
   }
+  if (options.vtk && !write_motion(folder) && status == exit_done) status = exit_failed;
   try {
     report::write_report(folder / "results.nc", folder / "report.html");
   } catch (const std::exception& fault) {  // the results are safe; only their picture is missing

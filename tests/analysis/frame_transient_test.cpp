@@ -52,62 +52,6 @@ Released let_go(const system::LocallyNonlinear& system, const model::StepDescrip
   return run;
 }
 
-struct Published {
-  const char* name;
-  bool with_middle;
-  double tolerance, mean_step;
-  double accepted, rejected;
-};
-
-std::ostream& operator<<(std::ostream& out, const Published& row) { return out << row.name; }
-
-class PublishedFrame : public ::testing::TestWithParam<Published> {};
-
-// Cardona and Cassano 1991, section 5.2, as the reference page completes it (its section 3): mean step and accepted
-// steps within 3 %, rejected ones within 3. The last step of the reference is not shortened: up to one step more.
-TEST_P(PublishedFrame, TakesTheStepsOfThePaper) {
-  const Published row = GetParam();
-  const auto system = system::assemble(model::build(bent_frame(row.with_middle), {}));
-  model::StepDescription step;
-  step.tolerance = row.tolerance;
-  step.controller = "cardona_cassano";
-  step.first = 1e-4;
-  step.largest = 0.12;
-  step.as_printed = true;
-  step.rebuild = false;
-  const Released run = let_go(system, step, 0.12);
-  ASSERT_EQ(run.report.status, RunStatus::done);
-  const double accepted = run.statistic("steps");
-  EXPECT_NEAR(accepted, row.accepted, 0.03 * row.accepted + 1.0);
-  EXPECT_NEAR(0.12 / accepted, row.mean_step, 0.03 * row.mean_step + row.mean_step / row.accepted);
-  EXPECT_NEAR(run.statistic("rejected"), row.rejected, 3.0);
-}
-
-INSTANTIATE_TEST_SUITE_P(CardonaCassano, PublishedFrame,
-                         ::testing::Values(Published{"PMB1", false, 1e-3, 2.585e-3, 47, 0},
-                                           Published{"PMB2", false, 1e-4, 1.002e-3, 120, 0},
-                                           Published{"PMM1", true, 1e-3, 6.56e-4, 184, 1},
-                                           Published{"PMM2", true, 1e-4, 2.21e-4, 544, 1}));
-
-// Paper: 34.0412; reference page: 34.04123.
-TEST(ReferenceValue, IsThatOfThePaperForTheFrame) {
-  const auto system = system::assemble(model::build(testing::portal_frame(), {}));
-  EXPECT_NEAR(system.reference(), 34.04123, 5e-6);
-}
-
-// A point mass of 1 kg on node 2 adds three components, an inertia of 2 kg m2 the square of pi/10.
-TEST(ReferenceValue, CountsPointMassesAndInertias) {
-  model::ModelDescription description = testing::portal_frame();
-  model::PointMassDescription mass;
-  mass.node = "2";
-  mass.mass = 1.0;
-  mass.inertia = {2.0};
-  description.structure.masses = {mass};
-  const auto system = system::assemble(model::build(description, {}));
-  const double frame = 7800.0 * 3.2e-3 * 5.7, box_squared = 9.0 + 2.7 * 2.7, angle = std::acos(-1.0) / 10.0;
-  EXPECT_NEAR(system.reference(), std::sqrt(3.0 * (frame + 1.0) * box_squared / 6.0 + 2.0 * angle * angle), 1e-12);
-}
-
 /// |y - y_exact|_M at the largest over the rows, of a frame that is let go from its static state.
 double largest_error(const system::LocallyNonlinear& system, const testing::MemorySink::Table& table) {
   const Matrix mass(system.mass());
@@ -126,6 +70,95 @@ double largest_error(const system::LocallyNonlinear& system, const testing::Memo
     largest = std::max(largest, std::sqrt(error.dot(mass * error)));
   }
   return largest / std::sqrt(start.dot(mass * start));
+}
+
+struct Published {
+  const char* name;
+  bool with_middle;
+  double tolerance, mean_step;
+  double accepted, rejected;
+  long below_cut_off;  // modes with omega h < 0.6
+  double error;        // largest |y - y_exact|_M / |y0|_M
+};
+
+std::ostream& operator<<(std::ostream& out, const Published& row) { return out << row.name; }
+
+class PublishedFrame : public ::testing::TestWithParam<Published> {
+ protected:
+  Released run(const system::LocallyNonlinear& system) const {
+    model::StepDescription step;
+    step.tolerance = GetParam().tolerance;
+    step.controller = "cardona_cassano";
+    step.first = 1e-4;
+    step.largest = 0.12;
+    step.as_printed = true;
+    step.rebuild = false;
+    return let_go(system, step, 0.12);
+  }
+};
+
+// Cardona and Cassano 1991, section 5.2, as the reference page completes it (its section 3): mean step and accepted
+// steps within 3 %, rejected ones within 3. The last step of the reference is not shortened: up to one step more.
+TEST_P(PublishedFrame, TakesTheStepsOfThePaper) {
+  const Published row = GetParam();
+  const Released run = this->run(system::assemble(model::build(bent_frame(row.with_middle), {})));
+  ASSERT_EQ(run.report.status, RunStatus::done);
+  const double accepted = run.statistic("steps");
+  EXPECT_NEAR(accepted, row.accepted, 0.03 * row.accepted + 1.0);
+  EXPECT_NEAR(0.12 / accepted, row.mean_step, 0.03 * row.mean_step + row.mean_step / row.accepted);
+  EXPECT_NEAR(run.statistic("rejected"), row.rejected, 3.0);
+}
+
+// Equation (33): modes above the cut-off, omega h > 0.6 with the mean step, carry less than TOL of the reference value,
+// by a factor of 10 to 35 (reference page, two digits); and as many modes lie below the cut-off as there.
+TEST_P(PublishedFrame, LeavesLessThanTheToleranceAboveTheCutOff) {
+  const Published row = GetParam();
+  const auto system = system::assemble(model::build(bent_frame(row.with_middle), {}));
+  const double mean_step = 0.12 / run(system).statistic("steps");
+  const Matrix mass(system.mass());
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes{Matrix(system.stiffness()), mass};
+  const Vector start = find_equilibrium(system, system.held_displacements()).state.q;
+  const Vector amplitude = modes.eigenvectors().transpose() * (mass * start);
+  const Vector phase = modes.eigenvalues().cwiseSqrt() * mean_step;
+  const long below = (phase.array() < 0.6).count();
+  EXPECT_EQ(below, row.below_cut_off);
+  const double share = amplitude.tail(amplitude.size() - below).norm() / system.reference();
+  EXPECT_GT(row.tolerance / share, 9.5);
+  EXPECT_LT(row.tolerance / share, 35.5);
+}
+
+// The accuracy delivered, to the two digits that the reference page prints and the sampling of the largest error:
+// another last step, or another place of a peak within a step, moves it by a few percent.
+TEST_P(PublishedFrame, HasTheErrorOfTheReplication) {
+  const Published row = GetParam();
+  const auto system = system::assemble(model::build(bent_frame(row.with_middle), {}));
+  const Released run = this->run(system);
+  EXPECT_NEAR(largest_error(system, run.sink.tables.at("run")), row.error, 0.05 * row.error);
+}
+
+INSTANTIATE_TEST_SUITE_P(CardonaCassano, PublishedFrame,
+                         ::testing::Values(Published{"PMB1", false, 1e-3, 2.585e-3, 47, 0, 1, 0.042},
+                                           Published{"PMB2", false, 1e-4, 1.002e-3, 120, 0, 3, 0.0135},
+                                           Published{"PMM1", true, 1e-3, 6.56e-4, 184, 1, 4, 0.12},
+                                           Published{"PMM2", true, 1e-4, 2.21e-4, 544, 1, 8, 0.029}));
+
+// Paper: 34.0412; reference page: 34.04123.
+TEST(ReferenceValue, IsThatOfThePaperForTheFrame) {
+  const auto system = system::assemble(model::build(testing::portal_frame(), {}));
+  EXPECT_NEAR(system.reference(), 34.04123, 5e-6);
+}
+
+// A point mass of 1 kg on node 2 adds three components, an inertia of 2 kg m2 the square of pi/10.
+TEST(ReferenceValue, CountsPointMassesAndInertias) {
+  model::ModelDescription description = testing::portal_frame();
+  model::PointMassDescription mass;
+  mass.node = "2";
+  mass.mass = 1.0;
+  mass.inertia = {2.0};
+  description.structure.masses = {mass};
+  const auto system = system::assemble(model::build(description, {}));
+  const double frame = 7800.0 * 3.2e-3 * 5.7, box_squared = 9.0 + 2.7 * 2.7, angle = std::acos(-1.0) / 10.0;
+  EXPECT_NEAR(system.reference(), std::sqrt(3.0 * (frame + 1.0) * box_squared / 6.0 + 2.0 * angle * angle), 1e-12);
 }
 
 // The default automatic step: the tolerance is the global error relative to the response in the mass norm, within a

@@ -98,7 +98,7 @@ class Command(unittest.TestCase):
             if message:
                 self.assertEqual(result.stderr, message)
             self.assertFalse((self.folder / "out").exists())
-        options = 'known: --help, --only, --set, --output, --jobs, --resume, --yes, --quiet'
+        options = 'known: --help, --only, --set, --output, --jobs, --resume, --yes, --vtk, ...'
         for arguments, message in [
                 (["run", study, "--sett", "a=1"],
                  f'error: the argument "--sett" is unknown; did you mean "--set"? ({options})\n`rubato run --help` says more\n'),

@@ -49,6 +49,7 @@ function write_analysis(parent, analysis, index) {
   const chapter = add_chapter(parent, analysis.name, element("p", {class: "facts", id: `analysis-${index}`}, facts.join(" · "),
                                                              facts.length ? " " : "", badge(status)),
                               what_became(analysis));
+  write_scene(chapter, analysis);
   if (is_transient(analysis)) {
     write_transient(chapter, analysis);
     write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));
