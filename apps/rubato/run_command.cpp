@@ -121,9 +121,11 @@ class Runner {
       for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
     for (const std::string& warning : report.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
+    const bool can_resume = report.status == RunStatus::interrupted && journals_[index];
     if (report.status != RunStatus::done)
-      tell(fmt::format("{}: analysis \"{}\" {}: {}", study_.description.file, task.name,
-                       report.status == RunStatus::failed ? "failed" : "stopped", report.message));
+      tell(fmt::format("{}: analysis \"{}\" {}: {}{}", study_.description.file, task.name,
+                       report.status == RunStatus::failed ? "failed" : "stopped", report.message,
+                       can_resume ? "; the same command with --resume goes on from there" : ""));
     return report;
   }
 
@@ -206,9 +208,12 @@ int run(const RunOptions& options) {
 }
 
 int check(const StudyOptions& options) {
+  const auto counted = [](Index count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
   const PreparedStudy study = prepare(options);
-  fmt::print("{}\n  {} coordinates, {} sliders\n", study.description.title, study.system.size(),
-             study.system.slider_count());
+  fmt::print("{}\n  {}, {}\n", study.description.title, counted(study.system.size(), "coordinate"),
+             counted(study.system.slider_count(), "slider"));
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i)
     fmt::print("  {}: {}\n", study.analyses[i].name, study.outlines[i].summary);

@@ -387,7 +387,7 @@ TEST(FrequencyResponse, GoesOnPastCombinationsThatNoModelCanHave) {
   EXPECT_EQ(result->at(4, "status"), 0.0);
   ASSERT_EQ(result->report.warnings.size(), 1u);
   EXPECT_EQ(result->report.warnings[0],
-            "at k = -1, angular_frequency = 1 rad/s there is no model (2 points): study.toml:10:13: error: the spring "
+            "at k = -1, angular_frequency = 1 rad/s nothing can be computed (2 points): study.toml:10:13: error: the spring "
             "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
 }
 

@@ -39,10 +39,15 @@ class Tables {
     append(peaks_.get(), result.peaks, layouts_.peaks());
     append(optimum_.get(), result.optimum, layouts_.optimum());
     if (!result.optimum.empty()) {
-      const double at = result.optimum[plan_.sweep.names().size()];
-      lowest_ = std::min(lowest_, at);
-      highest_ = std::max(highest_, at);
       last_optimum_ = result.optimum;
+      ++optima_;
+      if (static_cast<Optimum::Kind>(of_optimum("kind")) == Optimum::Kind::flat) {
+        ++flat_;
+      } else {
+        const double at = result.optimum[plan_.sweep.names().size()];
+        lowest_ = std::min(lowest_, at);
+        highest_ = std::max(highest_, at);
+      }
     }
     counts_.add(result.counts);
     if (!bands_) return;
@@ -73,9 +78,13 @@ class Tables {
     if (last_optimum_.empty()) return {};
     const bool is_amplitude = plan_.objective == DamperCurvePlan::Objective::amplitude;
     const std::string what = is_amplitude ? "lowest amplitude" : "largest friction work";
-    if (plan_.sweep.lines() > 1)
-      return fmt::format("{} at {} = {:.7g} to {:.7g}, over {} combinations", what, plan_.parameter, lowest_, highest_,
-                         plan_.sweep.lines());
+    if (plan_.sweep.lines() > 1) {
+      const std::string flat = flat_ == 0 ? "" : fmt::format("; {} do not depend on it there", flat_);
+      if (flat_ == optima_)
+        return fmt::format("{}: none of {} combinations depends on {}", what, optima_, plan_.parameter);
+      return fmt::format("{} at {} = {:.7g} to {:.7g}, over {} combinations{}", what, plan_.parameter, lowest_,
+                         highest_, optima_, flat);
+    }
     const std::size_t at = plan_.sweep.names().size();
     const double frequency = last_optimum_[at + 1], objective = last_optimum_[layouts_.objective()];
     return fmt::format("{} {:.9g} {} at {} = {:.9g}, angular_frequency = {:.9g} rad/s{}", what, objective,
@@ -132,6 +141,7 @@ class Tables {
   std::vector<std::vector<double>> objectives_;  ///< of random samples, by value of the parameter
   std::vector<double> last_optimum_;
   double lowest_ = HUGE_VAL, highest_ = -HUGE_VAL;
+  long optima_ = 0, flat_ = 0;
 };
 
 std::string values_text(double count) { return fmt::format("{:.0f} value{}", count, count == 1.0 ? "" : "s"); }
@@ -159,7 +169,7 @@ class Warnings {
       warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
                                      place_of(counts_.first_unbounded), values_text(count(PointStatus::unbounded))));
     if (count(PointStatus::impossible) > 0.0)
-      warnings.push_back(fmt::format("at {} there is no model ({}): {}", place_of(counts_.first_impossible),
+      warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(counts_.first_impossible),
                                      values_text(count(PointStatus::impossible)),
                                      scan_of(counts_.first_impossible).reason));
     if (count(PointStatus::not_converged) > 0.0)
@@ -234,6 +244,7 @@ class Lines {
     if (stop_.load()) {
       result.is_whole = false;
       result.optimum.clear();
+      result.counts.without_optimum = 0.0;  // nobody has looked for it
     }
     return result;
   }

@@ -144,7 +144,7 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
                                    place_of(plan, counts.first_unbounded), points_text(count(PointStatus::unbounded))));
   if (count(PointStatus::impossible) > 0.0) {
     const auto [line, step] = split(counts.first_impossible);
-    warnings.push_back(fmt::format("at {} there is no model ({}): {}", place_of(plan, counts.first_impossible),
+    warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(plan, counts.first_impossible),
                                    points_text(count(PointStatus::impossible)), solver.reason(line, step)));
   }
   if (count(PointStatus::not_converged) > 0.0)

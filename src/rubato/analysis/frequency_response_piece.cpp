@@ -275,7 +275,7 @@ std::string PieceSolver::reason(long line, std::size_t step) {
     solver_->forget();
     solver_->solve(excitations_[0], plan_.start, responses_[0]);
   } catch (const InvalidInput& fault) {
-    return fault.what();
+    return fault.where().file.empty() ? fault.message() : fault.what();
   }
   return {};
 }

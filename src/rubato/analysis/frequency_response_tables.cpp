@@ -66,14 +66,15 @@ std::string sweep_name(Sweep::Kind kind) {
 }
 
 Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& input) {
-  Attributes attributes{{"type", "frequency_response"},
-                        {"solver", route_name(plan.route.kind)},
-                        {"start", start_name(plan.start)},
-                        {"excitation", input.parameters[plan.excitation].first},
-                        {"sweep", sweep_name(plan.sweep.kind())},
-                        {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
-                        {"frequencies", std::to_string(plan.frequencies.size())},
-                        {"lines", std::to_string(plan.sweep.lines())}};
+  Attributes attributes{
+      {"type", "frequency_response"},
+      {"solver", route_name(plan.route.kind)},
+      {"start", start_name(plan.start)},
+      {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
+      {"sweep", sweep_name(plan.sweep.kind())},
+      {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
+      {"frequencies", std::to_string(plan.frequencies.size())},
+      {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
   if (plan.route.tolerance > 0.0) attributes.emplace_back("tolerance", fmt::format("{}", plan.route.tolerance));
   return attributes;
