@@ -386,9 +386,10 @@ TEST(FrequencyResponse, GoesOnPastCombinationsThatNoModelCanHave) {
   EXPECT_TRUE(std::isnan(result->at(2, "amplitude", "mass")));
   EXPECT_EQ(result->at(4, "status"), 0.0);
   ASSERT_EQ(result->report.warnings.size(), 1u);
-  EXPECT_EQ(result->report.warnings[0],
-            "at k = -1, angular_frequency = 1 rad/s nothing can be computed (2 points): study.toml:10:13: error: the spring "
-            "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
+  EXPECT_EQ(
+      result->report.warnings[0],
+      "at k = -1, angular_frequency = 1 rad/s nothing can be computed (2 points): study.toml:10:13: error: the spring "
+      "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <rubato/model/bodies/gyroscopic.hpp>
 #include <rubato/model/mechanism.hpp>
 
 #include <cmath>
@@ -27,6 +28,36 @@ Index Mechanism::add_node(const std::string& name, const std::array<double, 3>& 
   }
   nodes.push_back(node);
   return static_cast<Index>(nodes.size()) - 1;
+}
+
+Index Mechanism::add_space_node(const std::string& name, const numerics::Vector3& position,
+                                const numerics::Rotation& rotation, const std::array<bool, 6>& is_free) {
+  MechanismNode node;
+  node.name = name;
+  node.place.fill(ground);
+  node.numbers = {position[0], position[1], position[2], rotation.w(), rotation.x(), rotation.y(), rotation.z()};
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!is_free[axis]) continue;
+    node.place[axis] = size();
+    coordinates.push_back(name + "." + axis_names[axis]);
+    is_rotation.push_back(model::is_rotation(axis));
+  }
+  nodes.push_back(node);
+  return static_cast<Index>(nodes.size()) - 1;
+}
+
+void Mechanism::add_space_body(Index node, double mass, const numerics::Matrix3& inertia) {
+  for (std::size_t axis = 0; axis < 3; ++axis) masses.push_back({node, node, axis, axis, mass});
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = i; j < 3; ++j) {
+      const double value = inertia(static_cast<Index>(i), static_cast<Index>(j));
+      if (value != 0.0) masses.push_back({node, node, 3 + i, 3 + j, value});
+    }
+  elements.push_back(make_gyroscopic_moment(nodes[static_cast<std::size_t>(node)].name, space_node(node), inertia));
+}
+
+SpaceNode Mechanism::space_node(Index node) const {
+  return {node * space_numbers, nodes[static_cast<std::size_t>(node)].place};
 }
 
 PlaneNode Mechanism::plane_node(Index node) const {

@@ -4,6 +4,7 @@
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/lock.hpp>
 #include <rubato/model/joints/plane_point.hpp>
+#include <rubato/model/joints/space_point.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
 
@@ -67,6 +68,15 @@ struct Mechanism {
   /// @return its index
   Index add_node(const std::string& name, const std::array<double, 3>& position,
                  const std::array<bool, 3>& is_free = {true, true, true});
+  /// Adds a node in space.
+  /// @param rotation  turns its axes into those of the world
+  /// @param is_free   x, y, z and the three body axes: which of them move
+  Index add_space_node(const std::string& name, const numerics::Vector3& position, const numerics::Rotation& rotation,
+                       const std::array<bool, 6>& is_free = {true, true, true, true, true, true});
+  /// Gives a node in space a body whose centre of mass it is: mass, inertia, and the gyroscopic moment.
+  /// @param inertia  in the axes of the node [kg m2]
+  void add_space_body(Index node, double mass, const numerics::Matrix3& inertia);
+  SpaceNode space_node(Index node) const;
   PlaneNode plane_node(Index node) const;
   /// The point of a node that lies at (x, y) of the world at the start.
   PlanePoint plane_point(Index node, double x, double y) const;

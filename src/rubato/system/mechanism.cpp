@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/rotations.hpp>
 #include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
@@ -13,6 +14,24 @@ void require_mass(const Vector& diagonal, const std::vector<std::string>& names)
     if (!(diagonal[i] > 0.0))
       throw InvalidInput(fmt::format("\"{}\" is free and has no inertia ({}); give it a mass or an inertia, or fix it",
                                      names[static_cast<std::size_t>(i)], diagonal[i]));
+}
+
+using numerics::Rotation;
+using numerics::Vector3;
+
+Rotation rotation_in(const Vector& q, Index first) { return {q[first], q[first + 1], q[first + 2], q[first + 3]}; }
+
+/// The entries of some places; 0 of those that are fixed.
+Vector3 part_of(const Vector& x, const std::array<Index, 3>& place) {
+  Vector3 part = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i)
+    if (place[i] != ground) part[static_cast<Index>(i)] = x[place[i]];
+  return part;
+}
+
+void put(const Vector3& part, const std::array<Index, 3>& place, Vector& x) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (place[i] != ground) x[place[i]] = part[static_cast<Index>(i)];
 }
 
 }  // namespace
@@ -52,9 +71,13 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
     for (std::size_t axis = 0; axis < 6; ++axis) {
       if (node.place[axis] == ground) continue;
       start_.v[node.place[axis]] = node.velocity[axis];
+      const bool turns = model_.dimension == 3 && model::is_rotation(axis);
       number_[static_cast<std::size_t>(node.place[axis])] =
-          first + (model::is_rotation(axis) ? 2 : static_cast<Index>(axis));
+          turns ? -1 : first + (model::is_rotation(axis) ? 2 : static_cast<Index>(axis));
     }
+    const std::array<Index, 3> turned{node.place[3], node.place[4], node.place[5]};
+    if (model_.dimension == 3 && turned != std::array<Index, 3>{ground, ground, ground})
+      turns_.push_back({first + 3, turned});
   }
   start_.slider_force.resize(0);
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
@@ -64,14 +87,26 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
 
 void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {
   out = q;
-  for (Index i = 0; i < dq.size(); ++i) out[number_[static_cast<std::size_t>(i)]] += dq[i];
+  for (Index i = 0; i < dq.size(); ++i)
+    if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) out[number] += dq[i];
+  for (const Turn& turn : turns_) {
+    const Rotation turned =
+        (rotation_in(q, turn.quaternion) * numerics::rotation_of(part_of(dq, turn.place))).normalized();
+    out.segment<4>(turn.quaternion) << turned.w(), turned.x(), turned.y(), turned.z();
+  }
 }
 
 void Mechanism::difference(const Vector& q, const Vector& to, Vector& dq) const {
-  for (Index i = 0; i < size(); ++i) {
-    const Index number = number_[static_cast<std::size_t>(i)];
-    dq[i] = to[number] - q[number];
-  }
+  for (Index i = 0; i < size(); ++i)
+    if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) dq[i] = to[number] - q[number];
+  for (const Turn& turn : turns_)
+    put(numerics::vector_of(rotation_in(q, turn.quaternion).conjugate() * rotation_in(to, turn.quaternion)), turn.place,
+        dq);
+}
+
+void Mechanism::to_travel(const Vector& travel, Vector& motion) const {
+  for (const Turn& turn : turns_)
+    put(numerics::inverse_tangent_of(part_of(travel, turn.place)) * part_of(motion, turn.place), turn.place, motion);
 }
 
 void Mechanism::times_mass(const Vector& x, Vector& out) const {

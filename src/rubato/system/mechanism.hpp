@@ -4,6 +4,7 @@
 #include <rubato/model/mechanism.hpp>
 #include <rubato/system/state.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ class Mechanism {
   void retract(const Vector& q, const Vector& dq, Vector& out) const;
   /// The dq that leads from q to `to` along one retraction.
   void difference(const Vector& q, const Vector& to, Vector& dq) const;
+  /// Turns a small motion in the tangent space at the end of `travel` into the change of `travel` that makes it:
+  /// T(rotation)^-1 of each node in space (Bruels, Cardona and Arnold 2012); in the plane they are the same.
+  void to_travel(const Vector& travel, Vector& motion) const;
   /// M x
   void times_mass(const Vector& x, Vector& out) const;
 
@@ -48,7 +52,12 @@ class Mechanism {
   Vector diagonal_, weight_;
   bool has_diagonal_mass_ = false;
   std::vector<std::string> rows_;
-  std::vector<Index> number_;  // of q that a tangent coordinate moves, in the plane [n]
+  struct Turn {
+    Index quaternion = 0;          // its first number in q
+    std::array<Index, 3> place{};  // tangent coordinates of the body axes, or `ground`
+  };
+  std::vector<Index> number_;  // of q to which a tangent coordinate is added; -1: one of a turn [n]
+  std::vector<Turn> turns_;    // of nodes in space that are free to
   State start_;
 };
 

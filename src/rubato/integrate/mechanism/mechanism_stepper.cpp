@@ -67,6 +67,7 @@ class MechanismStepper final : public Stepper {
       mechanism_.times_mass(force_, product_);
       const double size = std::sqrt(force_.dot(product_));
       if (!std::isfinite(size)) return fault(StepOutcome::not_finite);
+      mechanism_.to_travel(travel_, force_);
       travel_ += force_;
       to.multiplier += (1.0 / scale_) * constraint_;
       // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
