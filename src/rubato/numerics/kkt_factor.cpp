@@ -133,6 +133,11 @@ bool KktFactor::factorise() {
   return true;
 }
 
+Index KktFactor::negative_pivots() const {
+  return static_cast<Index>(
+      std::count_if(value_.begin(), value_.begin() + size_, [](double pivot) { return pivot < 0.0; }));
+}
+
 void KktFactor::solve(double* x) const {
   const int n = static_cast<int>(size_);
   const double* const inverse = value_.data();

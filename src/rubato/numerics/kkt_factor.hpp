@@ -45,6 +45,8 @@ class KktFactor {
 
   /// Turns the values into factors. Returns false if a pivot is zero or not finite.
   bool factorise();
+  /// How many pivots of the last factors are negative: of a symmetric matrix, its negative eigenvalues (Sylvester).
+  Index negative_pivots() const;
   /// x <- A^-1 x
   void solve(double* x) const;
 

@@ -183,7 +183,7 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
       }
       // An open lock says nothing: multiplier = 0.
       values[factor_.slot(n + place.first_row + r, n + place.first_row + r)] -=
-          is_active && seen > 0.0 ? share * seen / weights.mass : 1.0;
+          is_active && seen > 0.0 ? share * seen / (weights.constraint > 0.0 ? weights.constraint : weights.mass) : 1.0;
     }
   }
 }
@@ -227,6 +227,42 @@ void MechanismEquations::solve(Vector& x, Vector& y) {
   factor_.solve(unknowns_.data());
   std::copy(unknowns_.data(), unknowns_.data() + n, x.data());
   std::copy(unknowns_.data() + n, unknowns_.data() + n + static_cast<std::size_t>(y.size()), y.data());
+}
+
+MechanismEquations::Linearised MechanismEquations::linearised(const Vector& multiplier) {
+  std::vector<Eigen::Triplet<double>> damping, stiffness, jacobian;
+  const auto add = [&](const ElementPlace& place, std::size_t k, std::vector<Eigen::Triplet<double>>& entries) {
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      for (std::size_t j = 0; j < place.place.size(); ++j)
+        entries.emplace_back(
+            place.place[i], place.place[j],
+            matrix_[static_cast<std::size_t>(place.local[i]) * k + static_cast<std::size_t>(place.local[j])]);
+  };
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const std::size_t k = elements_[e]->places().size();
+    elements_[e]->tangent(motion_, 1.0, 0.0, local_.data(), matrix_.data());
+    add(element_places_[e], k, stiffness);
+    elements_[e]->tangent(motion_, 0.0, 1.0, local_.data(), matrix_.data());
+    add(element_places_[e], k, damping);
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const std::size_t k = joints_[j]->places().size();
+    double* const rows = jacobian_.data() + place.jacobian_start;
+    joints_[j]->constraint(motion_, local_.data(), rows);
+    joints_[j]->curvature(motion_, multiplier.data() + place.first_row, matrix_.data());
+    add(place, k, stiffness);
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (std::size_t i = 0; i < place.place.size(); ++i)
+        jacobian.emplace_back(place.first_row + r, place.place[i],
+                              rows[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])]);
+  }
+  const Index n = mechanism_.size();
+  Linearised result{SparseMatrix(n, n), SparseMatrix(n, n), SparseMatrix(mechanism_.constraint_count(), n)};
+  result.damping.setFromTriplets(damping.begin(), damping.end());
+  result.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
+  result.jacobian.setFromTriplets(jacobian.begin(), jacobian.end());
+  return result;
 }
 
 double MechanismEquations::stored_energy() const {

@@ -31,6 +31,7 @@ class MechanismEquations {
   /// residual(), G, which the next product with it uses, and the matrix above, ready to be factorised.
   struct Weights {
     double mass = 1.0, damping = 0.0, stiffness = 0.0;
+    double constraint = 0.0;  ///< what E is a share of, over M; 0: the weight of mass
   };
   void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
   /// Evaluates G alone, with g.
@@ -43,9 +44,18 @@ class MechanismEquations {
   void second_rate(Vector& out);
 
   bool factorise() { return factor_.factorise(); }
+  /// Whether the last matrix was positive definite on the motions that the constraints leave (where it is symmetric).
+  bool is_positive() const { return factor_.negative_pivots() <= mechanism_.constraint_count(); }
   /// Solves with the factors; (x, y) is overwritten by the solution.
   void solve(Vector& x, Vector& y);
   int factorisations() const { return factorisations_; }
+
+  /// The equations about the present configuration:  M a + C v + K q + G^T multiplier = 0,  G q = 0  for small motions.
+  struct Linearised {
+    SparseMatrix damping, stiffness;  ///< df/dv and d(f + G^T multiplier)/dq [n x n]
+    SparseMatrix jacobian;            ///< G; rows of open locks are empty [c x n]
+  };
+  Linearised linearised(const Vector& multiplier);
 
   double stored_energy() const;  ///< of all elements where go_to() led, without gravity [J]
   /// Forces of the elements of one role [n].
