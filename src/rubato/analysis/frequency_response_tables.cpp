@@ -97,28 +97,6 @@ void append(const Vector& values, std::vector<double>& rows) {
 
 }  // namespace
 
-const std::vector<std::string>& status_words() {
-  static const std::vector<std::string> words{"converged",      "not_converged", "subharmonic",
-                                              "quasi_periodic", "unbounded",     "impossible"};
-  return words;
-}
-
-PointStatus point_status(integrate::SteadyStatus status) {
-  switch (status) {
-    case integrate::SteadyStatus::converged:
-      return PointStatus::converged;
-    case integrate::SteadyStatus::not_converged:
-      return PointStatus::not_converged;
-    case integrate::SteadyStatus::subharmonic:
-      return PointStatus::subharmonic;
-    case integrate::SteadyStatus::quasi_periodic:
-      return PointStatus::quasi_periodic;
-    case integrate::SteadyStatus::unbounded:
-      return PointStatus::unbounded;
-  }
-  return PointStatus::not_converged;
-}
-
 std::vector<std::string> reserved_columns() {
   return {"point",
           "coordinate",
