@@ -32,6 +32,7 @@ void StepInterpolation::at(double t, system::State& state) const {
     state.slider_force[i] =
         std::clamp(before_->slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
   }
+  system_.set_stop_forces(state);
 }
 
 }  // namespace rubato::analysis

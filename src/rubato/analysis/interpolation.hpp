@@ -5,8 +5,8 @@
 namespace rubato::analysis {
 
 /// States between the ends of an accepted step: the quintic through displacement, velocity and acceleration of
-/// equilibrium at both ends (error h^6 in q, h^5 in v: above the order of every method that marches here), and the
-/// return map of the sliders from the start of the step.
+/// equilibrium at both ends (error h^6 in q, h^5 in v: above the order of every method that marches here), the
+/// return map of the sliders from the start of the step, and the stops at its displacement and velocity.
 class StepInterpolation {
  public:
   explicit StepInterpolation(const system::LocallyNonlinear& system);
