@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace rubato::analysis {
 namespace {
@@ -208,6 +209,140 @@ TEST(StaticEquilibrium, SharesTheLoadAmongSlidersThatStickAndSlip) {
   EXPECT_NEAR(slipping.state.slider_force[0], 1.0, 1e-15);
   EXPECT_NEAR(slipping.state.slider_force[1], 4.0, 1e-14);
   EXPECT_EQ(find_equilibrium(between_sliders(12.0), {}).outcome, StaticOutcome::gives_way);
+}
+
+/// A mass under a weight between springs and stops.
+system::LocallyNonlinear on_stops(double weight, double spring, std::vector<model::StopDescription> stops) {
+  model::ModelDescription description;
+  description.coordinates = {{"mass", 1.0, 0.0, 0.0, {}}};
+  if (spring > 0.0) description.springs = {{{"mass", "ground"}, {}, spring, {}}};
+  description.held_forces = {{"mass", weight, {}}};
+  description.stops = std::move(stops);
+  return assembled(description);
+}
+
+// Nothing but a stop may hold a mass: it comes to rest a gap and its weight over the stiffness away, also from far.
+TEST(StaticEquilibrium, RestsOnAStop) {
+  for (const double gap : {0.01, 0.0, -0.02, 3.0}) {
+    const StaticEquilibrium found =
+        find_equilibrium(on_stops(9.81, 0.0, {{"floor", {"mass", "ground"}, {}, gap, 1000.0, 5.0, {}}}), {});
+    ASSERT_EQ(found.outcome, StaticOutcome::found) << gap;
+    EXPECT_NEAR(found.state.q[0], gap + 9.81e-3, 1e-13 * std::max(1.0, std::abs(gap))) << gap;
+    EXPECT_NEAR(found.state.slider_force[0], 9.81, 1e-9);
+  }
+  const StaticEquilibrium wrong_side =
+      find_equilibrium(on_stops(-9.81, 0.0, {{"floor", {"mass", "ground"}, {}, 0.01, 1000.0, 0.0, {}}}), {});
+  EXPECT_EQ(wrong_side.outcome, StaticOutcome::mechanism);
+}
+
+// With a spring k = 500 N/m: open below 5 N with a gap of 10 mm, beyond it both carry; a negative gap pushes by itself:
+// 500 u + 1000 (u + 0.03) = 0. Between two stops only one carries.
+TEST(StaticEquilibrium, ClosesAStopWhereTheSpringGivesThatFar) {
+  const auto at = [](double weight, double gap) {
+    const auto system = on_stops(weight, 500.0, {{"s", {"mass", "ground"}, {}, gap, 1000.0, 0.0, {}}});
+    const StaticEquilibrium found = find_equilibrium(system, {});
+    EXPECT_EQ(found.outcome, StaticOutcome::found);
+    return found.state.q[0];
+  };
+  EXPECT_NEAR(at(4.0, 0.01), 0.008, 1e-16);
+  EXPECT_NEAR(at(8.0, 0.01), 0.012, 1e-16);
+  EXPECT_NEAR(at(0.0, -0.03), -0.02, 1e-16);
+  const auto both = on_stops(9.81, 0.0,
+                             {{"below", {"mass", "ground"}, {}, 0.01, 1000.0, 0.0, {}},
+                              {"above", {"ground", "mass"}, {}, 0.01, 1000.0, 0.0, {}}});
+  const StaticEquilibrium found = find_equilibrium(both, {});
+  ASSERT_EQ(found.outcome, StaticOutcome::found);
+  EXPECT_NEAR(found.state.q[0], 0.01981, 1e-14);
+  EXPECT_EQ(found.state.slider_force[1], 0.0);
+}
+
+/// Two columns of height H, fixed at their feet, and a beam of length B between their heads.
+model::ModelDescription portal(double height, double width) {
+  model::ModelDescription description;
+  model::StructureDescription& frame = description.structure;
+  const double places[][2] = {{0.0, 0.0}, {0.0, height}, {width, height}, {width, 0.0}};
+  for (const auto& p : places) frame.nodes.push_back({std::to_string(frame.nodes.size() + 1), {p[0], p[1]}, {}});
+  frame.materials = {{"steel", 2.1e11, 0.3, {}, 7850.0, {}}};
+  frame.sections = {{"tube", 1e-3, {1e-6}, {}, {}, {}}};
+  for (const auto& [first, second] : {std::pair{"1", "2"}, {"2", "3"}, {"4", "3"}}) {
+    model::BeamDescription beam;
+    beam.nodes = {first, second};
+    beam.section = "tube";
+    beam.material = "steel";
+    beam.formulation = model::BeamDescription::Formulation::euler_bernoulli;
+    frame.beams.push_back(beam);
+  }
+  model::SupportDescription left, right;
+  left.node = "1";
+  right.node = "4";
+  left.fix = right.fix = {"x", "y", "rz"};
+  frame.supports = {left, right};
+  return description;
+}
+
+// Hinges at both ends of the beam leave two cantilevers: F H^3 / (3 EI) under F at each head.
+TEST(StaticEquilibrium, OfAPortalWithHingesIsThatOfTwoCantilevers) {
+  const double height = 3.0, force = 1e3;
+  model::ModelDescription description = portal(height, 4.0);
+  description.structure.beams[1].release = {{{"rz"}, {"rz"}}};
+  description.held_forces = {{"2.x", force, {}}, {"3.x", force, {}}};
+  const auto system = assembled(description);
+  const StaticEquilibrium found = find_equilibrium(system, {});
+  ASSERT_EQ(found.outcome, StaticOutcome::found);
+  const double expected = force * std::pow(height, 3) / (3.0 * 2.1e11 * 1e-6);
+  EXPECT_NEAR(found.state.q[place_of(system, "2.x")], expected, 1e-11 * expected);
+  EXPECT_NEAR(found.state.q[place_of(system, "3.x")], expected, 1e-11 * expected);
+}
+
+// Hinges at all four corners make a four-bar linkage, whose beam swings sideways.
+TEST(StaticEquilibrium, OfAFourBarLinkageDoesNotExist) {
+  model::ModelDescription description = portal(3.0, 4.0);
+  for (auto& beam : description.structure.beams) beam.release = {{{"rz"}, {"rz"}}};
+  const auto system = assembled(description);
+  EXPECT_EQ(system.size(), 4);  // no corner shares a rotation with anything
+  const StaticEquilibrium found = find_equilibrium(system, {});
+  ASSERT_EQ(found.outcome, StaticOutcome::mechanism);
+  std::vector<std::string> names;
+  for (const Index i : found.moving) names.push_back(system.coordinates()[static_cast<std::size_t>(i)]);
+  EXPECT_EQ(names, (std::vector<std::string>{"2.x", "3.x"}));
+}
+
+/// A beam of 2 m in equal parts, held at both ends.
+system::LocallyNonlinear held_beam(int elements, bool by_releases) {
+  model::ModelDescription description = portal(2.0, 1.0);
+  model::StructureDescription& beam = description.structure;
+  beam.nodes.resize(2);
+  beam.beams.resize(1);
+  beam.beams[0].elements = elements;
+  beam.supports[1].node = "2";
+  if (by_releases)
+    beam.beams[0].release = {{{"rz"}, {"rz"}}};
+  else
+    for (auto& support : beam.supports) support.fix = {"x", "y"};
+  description.held_forces = {{"1-2:" + std::to_string(elements / 2) + ".x", 100.0, {}}};
+  return assembled(description);
+}
+
+// The released rotations follow without resistance, which is what a pinned support leaves to them: the same deflection,
+// F L^3 / (48 EI) in the middle. The mass of the static shape can only raise a frequency (Rayleigh): of eight elements
+// by less than the share (h/L)^4 pi^4/720 of which the consistent mass errs by itself, times the ends' part.
+TEST(StaticEquilibrium, WithReleasedEndsIsThatOfPinnedSupports) {
+  const auto released = held_beam(8, true), pinned = held_beam(8, false);
+  ASSERT_EQ(released.size() + 2, pinned.size());
+  const double deflection = 100.0 * 8.0 / (48.0 * 2.1e11 * 1e-6);
+  for (const auto* system : {&released, &pinned}) {
+    const StaticEquilibrium found = find_equilibrium(*system, {});
+    ASSERT_EQ(found.outcome, StaticOutcome::found);
+    EXPECT_NEAR(found.state.q[place_of(*system, "1-2:4.x")], deflection, 1e-10 * deflection);
+  }
+  const double exact = std::pow(std::numbers::pi / 2.0, 2) * std::sqrt(2.1e11 * 1e-6 / (7850.0 * 1e-3));
+  const auto lowest = [](const system::LocallyNonlinear& system) {
+    return std::sqrt(Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(Matrix(system.stiffness()), Matrix(system.mass()))
+                         .eigenvalues()[0]);
+  };
+  EXPECT_GE(lowest(released), lowest(pinned) * (1.0 - 1e-12));
+  EXPECT_NEAR(lowest(released) / exact, 1.0, std::pow(std::numbers::pi / 8.0, 4) / 720.0 * 8.0);
+  EXPECT_LT(lowest(held_beam(16, true)) / exact - 1.0, (lowest(released) / exact - 1.0) / 8.0);
 }
 
 std::vector<std::string> moving(const system::LocallyNonlinear& system) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -243,6 +244,64 @@ TEST(Transient, CountsTheSlidersAsStuckInTheStabilityLimit) {
   EXPECT_EQ(refusal(system, description("central_difference", 0.2390, 10.0)), "accepted");
   EXPECT_NE(refusal(system, description("central_difference", 0.2405, 10.0)).find("mode 5 of the model"),
             std::string::npos);
+}
+
+/// 2 kg that fly at a stop of 800 N/m, 50 mm away, with 0.8 m/s.
+system::LocallyNonlinear flying_mass(double damping) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(2.0 * Matrix::Identity(1, 1));
+  parts.damping = parts.stiffness = SparseMatrix(1, 1);
+  parts.stops = {{"wall", 0, ground, 0.05, 800.0, damping}};
+  parts.start.q = Vector::Zero(1);
+  parts.start.v = Vector::Constant(1, 0.8);
+  parts.coordinates = {"mass"};
+  return system::LocallyNonlinear(std::move(parts));
+}
+
+model::TransientDescription located(const std::string& method, double tolerance, double duration) {
+  model::TransientDescription d = description(method, 1.0, duration);
+  d.step.reset();
+  model::StepDescription step;
+  step.tolerance = tolerance;
+  step.locate_events = true;
+  d.automatic_step = step;
+  return d;
+}
+
+// In contact average acceleration keeps the energy of the linear spring; located ends leave nothing between the
+// branches. What the damped stop takes is the loss of kinetic energy, all of it before the mass is free again.
+TEST(EnergyLedger, BooksWhatStopsStoreAndDissipate) {
+  const Recorded elastic = run(flying_mass(0.0), located("average_acceleration", 1e-5, 0.25));
+  ASSERT_EQ(elastic.report.status, RunStatus::done);
+  const double energy = 0.5 * 2.0 * 0.8 * 0.8;
+  const auto stored = elastic.column("stop_stored", "", "run.energy");
+  EXPECT_NEAR(*std::max_element(stored.begin(), stored.end()), energy, 1e-3 * energy);
+  for (const double r : elastic.column("residue", "", "run.energy")) ASSERT_NEAR(r, 0.0, 1e-9 * energy);
+  for (const double d : elastic.column("stop_dissipated", "", "run.energy")) ASSERT_NEAR(d, 0.0, 1e-9 * energy);
+
+  const Recorded damped = run(flying_mass(12.0), located("average_acceleration", 1e-5, 0.25));
+  const auto lost = damped.column("stop_dissipated", "", "run.energy");
+  const auto kinetic = damped.column("kinetic", "", "run.energy");
+  EXPECT_LT(kinetic.back(), 0.7 * energy);
+  EXPECT_NEAR(lost.back(), energy - kinetic.back(), 1e-9 * energy);
+  for (std::size_t i = 1; i < lost.size(); ++i) ASSERT_GE(lost[i], lost[i - 1] - 1e-6 * energy);
+  for (const double r : damped.column("residue", "", "run.energy")) ASSERT_NEAR(r, 0.0, 1e-9 * energy);
+}
+
+TEST(Transient, WritesForceAndPenetrationOfStops) {
+  const Recorded result = run(flying_mass(0.0), located("generalized_alpha", 1e-4, 0.25));
+  const auto force = result.column("force", "wall"), depth = result.column("penetration", "wall");
+  ASSERT_EQ(force.size(), depth.size());
+  EXPECT_GT(*std::max_element(depth.begin(), depth.end()), 0.039);  // v0/omega = 0.04 m
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    ASSERT_NEAR(force[i], 800.0 * depth[i], 1e-9);
+    ASSERT_GE(force[i], 0.0);
+  }
+  const auto& statistics = result.report.statistics;
+  const auto events =
+      std::find_if(statistics.begin(), statistics.end(), [](const auto& s) { return s.first == "events"; });
+  ASSERT_NE(events, statistics.end());
+  EXPECT_EQ(events->second, "2");
 }
 
 }  // namespace

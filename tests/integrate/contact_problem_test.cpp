@@ -89,5 +89,109 @@ TEST(ContactProblem, EndsOnInputThatIsNotANumber) {
   }
 }
 
+struct StopProblem {
+  Matrix compliance, velocity_compliance;
+  std::vector<model::Slider> sliders;
+  std::vector<model::Stop> stops;
+  Vector trial, previous, penetration;
+};
+
+// What an alpha method makes of sliders and stops: W' is W times gamma/(beta h).
+StopProblem random_stop_problem(std::mt19937& random) {
+  std::uniform_real_distribution<double> any(-1.0, 1.0), positive(0.1, 3.0);
+  const Index sliders = static_cast<Index>(random() % 3), m = sliders + 1 + static_cast<Index>(random() % 3);
+  StopProblem p;
+  const Matrix half = Matrix::NullaryExpr(m, m, [&] { return any(random); });
+  p.compliance = half * half.transpose() + 0.1 * Matrix::Identity(m, m);
+  p.velocity_compliance = positive(random) * p.compliance;
+  p.trial = Vector::NullaryExpr(m, [&] { return 4.0 * any(random); });
+  p.previous = p.penetration = Vector::Zero(m);
+  for (Index i = 0; i < sliders; ++i) {
+    p.sliders.push_back({"", 0, ground, positive(random), positive(random)});
+    p.previous[i] = p.sliders.back().limit * std::clamp(2.0 * any(random), -1.0, 1.0);
+  }
+  for (Index i = sliders; i < m; ++i) {
+    p.stops.push_back({"", 0, ground, 0.0, positive(random), random() % 3 == 0 ? 0.0 : positive(random)});
+    const auto& stop = p.stops.back();
+    p.penetration[i] = any(random);
+    p.trial[i] = stop.stiffness * p.penetration[i] + stop.damping * 2.0 * any(random);
+    p.previous[i] = random() % 2 == 0 ? 0.0 : positive(random);
+  }
+  return p;
+}
+
+/// All consistent combinations of states, each by its own linear system.
+std::vector<Vector> enumerate(const StopProblem& p) {
+  const auto m = static_cast<Index>(p.trial.size()), sliders = static_cast<Index>(p.sliders.size());
+  std::vector<Vector> found;
+  int combinations = 1;
+  for (Index i = 0; i < m; ++i) combinations *= 3;
+  for (int code = 0; code < combinations; ++code) {
+    Matrix rows = Matrix::Zero(m, m), law(m, m);
+    Vector right(m);
+    std::vector<int> state;
+    for (Index i = 0, rest = code; i < m; ++i, rest /= 3) {
+      state.push_back(static_cast<int>(rest % 3));
+      const bool slides = i < sliders;
+      const auto& stop = p.stops[static_cast<std::size_t>(std::max<Index>(0, i - sliders))];
+      if (slides)
+        law.row(i) = p.sliders[static_cast<std::size_t>(i)].stiffness * p.compliance.row(i);
+      else
+        law.row(i) = stop.stiffness * p.compliance.row(i) + stop.damping * p.velocity_compliance.row(i);
+      const double limit = slides ? p.sliders[static_cast<std::size_t>(i)].limit : 0.0;
+      if (state.back() == 0) {
+        rows.row(i) = law.row(i);
+        rows(i, i) += 1.0;
+        right[i] = p.trial[i];
+      } else if (slides || state.back() == 1) {
+        rows(i, i) = 1.0;
+        right[i] = state.back() == 1 ? limit : -limit;
+      } else {
+        rows.row(i) = p.compliance.row(i);
+        right[i] = p.penetration[i];
+      }
+    }
+    const Vector force = rows.fullPivLu().solve(right);
+    const Vector rest = p.trial - law * force, depth = p.penetration - p.compliance * force;
+    bool is_consistent = true;
+    for (Index i = 0; i < m; ++i) {
+      const int s = state[static_cast<std::size_t>(i)];
+      if (i < sliders) {
+        const double limit = p.sliders[static_cast<std::size_t>(i)].limit;
+        is_consistent &= s == 0 ? std::abs(force[i]) <= limit : (s == 1 ? rest[i] >= limit : rest[i] <= -limit);
+      } else if (s == 0) {
+        is_consistent &= force[i] >= 0.0 && depth[i] >= -1e-12;
+      } else if (s == 1) {
+        is_consistent &= depth[i] <= 0.0 || rest[i] <= 0.0;
+      } else {
+        is_consistent &= force[i] >= 0.0 && force[i] <= rest[i] + 1e-12;
+      }
+    }
+    if (is_consistent) found.push_back(force);
+  }
+  return found;
+}
+
+// Of all 3^m combinations of states the consistent ones have one and the same forces, and solve() finds them.
+TEST(ContactProblem, OfSlidersAndStopsIsSolvedAsByTryingEveryCombination) {
+  std::mt19937 random(17);
+  int touching = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const StopProblem p = random_stop_problem(random);
+    const std::vector<Vector> all = enumerate(p);
+    ASSERT_FALSE(all.empty()) << trial;
+    for (const Vector& other : all) ASSERT_LT((other - all.front()).norm(), 1e-9) << trial;
+    ContactProblem contact;
+    contact.reset(p.compliance, p.velocity_compliance, p.sliders, p.stops);
+    Vector force(p.trial.size());
+    ASSERT_TRUE(contact.solve(p.trial.data(), p.previous.data(), force.data(), p.penetration.data())) << trial;
+    ASSERT_LT((force - all.front()).cwiseAbs().maxCoeff(), 1e-10) << trial;
+    const Vector depth = p.penetration - p.compliance * force;
+    for (Index i = static_cast<Index>(p.sliders.size()); i < force.size(); ++i)
+      touching += force[i] > 0.0 && std::abs(depth[i]) < 1e-12;
+  }
+  EXPECT_GT(touching, 50);
+}
+
 }  // namespace
 }  // namespace rubato::integrate

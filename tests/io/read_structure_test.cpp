@@ -179,6 +179,47 @@ TEST(DistributedForceFile, IsReadAndPointsAtItsFaults) {
             "that is finite at all times");
 }
 
+TEST(ReleaseFile, IsReadAndPointsAtItsFaults) {
+  const auto with = [](const std::string& release) {
+    return portal_with("elements = 4\n", "elements = 4\nrelease = " + release + "\n");  // line 26
+  };
+  EXPECT_EQ(with("{ first = [\"rz\"] }"), "accepted");
+  EXPECT_EQ(with("{ second = [\"rx\"] }"),
+            "study.toml:26:11: error: beam \"column\" releases \"rx\"; an end of a beam has x, y, rz in the plane");
+  EXPECT_EQ(with("{ frist = [\"rz\"] }"),
+            "study.toml:26:13: error: beam \"column\": release has no key \"frist\"; did you mean \"first\"? "
+            "(known: first, second)");
+  EXPECT_EQ(portal_with("elements = 4\n", "release = { first = [\"x\"], second = [\"x\"] }\n"),
+            "study.toml:25:11: error: beam \"column\" releases so much that it moves by itself without resistance: a "
+            "mechanism; keep one of the ends of each motion");
+}
+
+TEST(StopFile, IsReadAndPointsAtItsFaults) {
+  const std::string stop =
+      "[[stop]]\n"                           // 57
+      "name = \"bumper\"\n"                  // 58
+      "between = [\"tip.x\", \"ground\"]\n"  // 59
+      "gap = -0.001\n"                       // 60
+      "stiffness = 1e6\n"                    // 61
+      "damping = 10.0\n"                     // 62
+      "[[analysis]]\n";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    return verdict(edited(from, to, edited("[[analysis]]\n", stop, portal_text)));
+  };
+  EXPECT_EQ(with("-0.001", "\"2 * 0.001\""), "accepted");
+  EXPECT_EQ(with("damping = 10.0\n", ""), "accepted");
+  EXPECT_EQ(with("stiffness = 1e6", "stiffness = 0"),
+            "study.toml:61:13: error: stop \"bumper\": stiffness must be positive, got 0");
+  EXPECT_EQ(with("damping = 10.0", "damping = -1"),
+            "study.toml:62:11: error: stop \"bumper\": damping must not be negative, got -1");
+  EXPECT_EQ(with("gap = -0.001\n", ""), "study.toml:57:1: error: stop \"bumper\" lacks the key \"gap\"");
+  EXPECT_EQ(with("\"tip.x\", \"ground\"", "\"tip.x\", \"tip.x\""),
+            "study.toml:59:21: error: stop \"bumper\" joins \"tip.x\" with itself");
+  EXPECT_EQ(with("name = \"bumper\"", "name = \"hinge\""),
+            "study.toml:58:8: error: stop \"hinge\" has the name of a slider or a coordinate; results would mix them "
+            "up");
+}
+
 // Weight of what hangs on the foot: column 1e-3 m2 x 3 m, beam 2 m, truss sqrt(13) m of steel, and the mass of 10 kg;
 // of what a support holds, the foot's share, nothing arrives.
 TEST(Gravity, PullsElementsAndMasses) {

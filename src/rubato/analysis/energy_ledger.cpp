@@ -2,6 +2,18 @@
 
 namespace rubato::analysis {
 
+namespace {
+
+double stored_in_stop(const system::LocallyNonlinear& system, Index stop, const system::State& state) {
+  const Index i = system.slider_count() + stop;
+  if (!(state.slider_force[i] > 0.0)) return 0.0;
+  const auto& values = system.stops()[static_cast<std::size_t>(stop)];
+  const double depth = system.relative_displacement(i, state.q) - values.gap;
+  return depth > 0.0 ? 0.5 * values.stiffness * depth * depth : 0.0;
+}
+
+}  // namespace
+
 Energy energy_of(const system::LocallyNonlinear& system, const system::State& state, Vector& product) {
   Energy energy;
   product.noalias() = system.mass() * state.v;
@@ -11,6 +23,7 @@ Energy energy_of(const system::LocallyNonlinear& system, const system::State& st
   for (Index i = 0; i < system.slider_count(); ++i)
     energy.slider_stored +=
         0.5 * state.slider_force[i] * state.slider_force[i] / system.sliders()[static_cast<std::size_t>(i)].stiffness;
+  for (Index j = 0; j < system.stop_count(); ++j) energy.stop_stored += stored_in_stop(system, j, state);
   return energy;
 }
 
@@ -20,11 +33,11 @@ EnergyLedger::EnergyLedger(const system::LocallyNonlinear& system)
 void EnergyLedger::start(const system::State& state) {
   const Energy now = energy_of(system_, state, product_);
   sums_ = {};
-  sums_.start = now.kinetic + now.strain + now.slider_stored;
+  sums_.start = now.stored();
 }
 
 EnergyLedger::Booking EnergyLedger::booking(const system::State& before, const system::State& after) {
-  Booking booked{0.0, 0.0, 0.0};
+  Booking booked{0.0, 0.0, 0.0, 0.0};
   travel_ = before.v + after.v;
   product_.noalias() = system_.damping() * travel_;
   travel_ = after.q - before.q;
@@ -39,6 +52,13 @@ EnergyLedger::Booking EnergyLedger::booking(const system::State& before, const s
         system_.relative_displacement(i, travel_) - change / system_.sliders()[static_cast<std::size_t>(i)].stiffness;
     booked.slider += 0.5 * (before.slider_force[i] + after.slider_force[i]) * slip;
   }
+  for (Index j = 0; j < system_.stop_count(); ++j) {
+    const Index i = system_.slider_count() + j;
+    const double f0 = before.slider_force[i], f1 = after.slider_force[i];
+    if (f0 > 0.0)
+      booked.stop += 0.5 * (f0 + f1) * system_.relative_displacement(i, travel_) -
+                     (stored_in_stop(system_, j, after) - stored_in_stop(system_, j, before));
+  }
   return booked;
 }
 
@@ -46,15 +66,17 @@ void EnergyLedger::add_step(const system::State& before, const system::State& af
   const Booking booked = booking(before, after);
   sums_.damper_dissipated += booked.damper;
   sums_.slider_dissipated += booked.slider;
+  sums_.stop_dissipated += booked.stop;
   sums_.load_work += booked.load;
 }
 
 Energy EnergyLedger::at(const system::State& before, const system::State& now) {
-  const Booking part = &before == &now ? Booking{0.0, 0.0, 0.0} : booking(before, now);
+  const Booking part = &before == &now ? Booking{0.0, 0.0, 0.0, 0.0} : booking(before, now);
   Energy energy = energy_of(system_, now, product_);
   energy.start = sums_.start;
   energy.damper_dissipated = sums_.damper_dissipated + part.damper;
   energy.slider_dissipated = sums_.slider_dissipated + part.slider;
+  energy.stop_dissipated = sums_.stop_dissipated + part.stop;
   energy.load_work = sums_.load_work + part.load;
   return energy;
 }

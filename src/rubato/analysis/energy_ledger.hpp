@@ -10,23 +10,28 @@ struct Energy {
   double kinetic = 0.0;            ///< v^T M v / 2
   double strain = 0.0;             ///< q^T K q / 2
   double slider_stored = 0.0;      ///< sum of fc^2 / (2 kT)
+  double stop_stored = 0.0;        ///< sum of k (u - gap)^2 / 2 of the stops that push
   double damper_dissipated = 0.0;  ///< by C
   double slider_dissipated = 0.0;  ///< by slip
+  double stop_dissipated = 0.0;    ///< by the dashpots of stops, and what is left in their springs when they let go
   double load_work = 0.0;
-  double start = 0.0;  ///< kinetic + strain + slider_stored at the start
+  double start = 0.0;  ///< stored() at the start
 
+  double stored() const { return kinetic + strain + slider_stored + stop_stored; }
   /// What the method itself made or lost: it closes the balance. Round-off for the exact flow, and for average
   /// acceleration.
   double residue() const {
-    return kinetic + strain + slider_stored + damper_dissipated + slider_dissipated - load_work - start;
+    return stored() + damper_dissipated + slider_dissipated + stop_dissipated - load_work - start;
   }
 };
 
 /// Books the steps of a method. Over a step with dq = q1 - q0:
 ///
 ///   dampers (C v0 + C v1)/2 . dq,   loads (f0 + f1)/2 . dq,   sliders (fc0 + fc1)/2 . d(slip),   slip = u - fc/kT
+///   stops  (fs0 + fs1)/2 . du less the change of stop_stored, of those that push before the step
 ///
-/// With average acceleration v0 + v1 = 2 dq/h, and the balance closes to round-off whatever the sliders do.
+/// With average acceleration v0 + v1 = 2 dq/h, and the balance closes to round-off whatever the sliders do. A step in
+/// which a stop closes without being located leaves its share of the work in the residue.
 class EnergyLedger {
  public:
   explicit EnergyLedger(const system::LocallyNonlinear& system);
@@ -40,7 +45,7 @@ class EnergyLedger {
 
  private:
   struct Booking {
-    double damper, slider, load;
+    double damper, slider, stop, load;
   };
   Booking booking(const system::State& before, const system::State& after);
 
@@ -50,7 +55,7 @@ class EnergyLedger {
   Energy sums_;
 };
 
-/// Kinetic, strain and slider-stored energy of a state; the other entries are zero. `product` [n] is overwritten.
+/// Energies that are stored in a state; the other entries are zero. `product` [n] is overwritten.
 Energy energy_of(const system::LocallyNonlinear& system, const system::State& state, Vector& product);
 
 }  // namespace rubato::analysis

@@ -28,7 +28,7 @@ class ExactRecorder final : public integrate::ExactVisitor {
         with_energy_(plan.energy),
         product_(system.size()) {
     start_ = energy_of(system, plan.start, product_);
-    start_.start = start_.kinetic + start_.strain + start_.slider_stored;
+    start_.start = start_.stored();
   }
 
   bool sample(const system::State& state, const integrate::ExactWork& work) override {

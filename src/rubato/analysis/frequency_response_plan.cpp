@@ -88,6 +88,13 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
 
 void plan_route(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                 const std::string& title, const Location& where) {
+  if (input.system.stop_count() > 0 && description.route != Description::Route::time_marching)
+    throw InvalidInput(
+        place(description.route_where, where),
+        fmt::format("{}the solver {} knows sliders, and the model has the stop \"{}\"; take solver = "
+                    "\"time_marching\"",
+                    title, description.route == Description::Route::periodic ? "periodic" : "harmonic_balance",
+                    input.system.stops().front().name));
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");

@@ -53,6 +53,7 @@ void StepInterpolation::at(double t, system::State& state, Vector& acceleration)
     const double travel = system_.relative_displacement(i, state.q) - system_.relative_displacement(i, before.q);
     state.slider_force[i] = std::clamp(before.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
   }
+  system_.set_stop_forces(state);
 }
 
 void StepInterpolation::through_knots(double t, system::State& state, Vector& acceleration) {

@@ -13,7 +13,7 @@ namespace rubato::analysis {
 /// times its data: an unconditionally stable method may step over the periods of fast modes, whose velocities a Hermite
 /// polynomial would multiply by the step. Methods of higher order follow every mode that they are stable for: they have
 /// the quintic through displacement, velocity and acceleration at both ends (error h^6, h^5, h^4).
-/// Sliders: the return map from the start of the step.
+/// Sliders: the return map from the start of the step. Stops: at its displacement and velocity.
 class StepInterpolation {
  public:
   /// @param order  of the method

@@ -1,5 +1,6 @@
 #include <rubato/analysis/observed_blocks.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace rubato::analysis {
@@ -122,6 +123,40 @@ std::vector<Index> SliderBlocks::order() const {
   std::vector<Index> order = of_displacements_;
   order.insert(order.end(), of_rotations_.begin(), of_rotations_.end());
   return order;
+}
+
+StopBlocks::StopBlocks(const system::LocallyNonlinear& system) : system_(system) {
+  for (Index j = 0; j < system.stop_count(); ++j) {
+    const auto& stop = system.stops()[static_cast<std::size_t>(j)];
+    const Index end = stop.first == ground ? stop.second : stop.first;
+    (system.is_rotation(end) ? of_rotations_ : of_displacements_).push_back(j);
+  }
+}
+
+void StopBlocks::add(results::TableLayout& layout) const {
+  const auto add_kind = [&](const std::vector<Index>& stops, const Names& force, const Names& penetration,
+                            const char* dimension) {
+    if (stops.empty()) return;
+    std::vector<std::string> labels;
+    for (const Index j : stops) labels.push_back(system_.stops()[static_cast<std::size_t>(j)].name);
+    layout.blocks.push_back({force.variable, force.unit, force.description, dimension, labels});
+    layout.blocks.push_back({penetration.variable, penetration.unit, penetration.description, dimension, labels});
+  };
+  add_kind(of_displacements_, {"force", "N", "force of a stop; -force acts on the first coordinate"},
+           {"penetration", "m", "how far a gap is overclosed, 0 where it is open"}, "stop");
+  add_kind(of_rotations_, {"moment", "N m", "moment of a stop; -moment acts on the first coordinate"},
+           {"penetration_angle", "rad", "how far a gap is overclosed, 0 where it is open"}, "rotational_stop");
+}
+
+void StopBlocks::append(const system::State& state, std::vector<double>& row) const {
+  const Index sliders = system_.slider_count();
+  for (const auto* stops : {&of_displacements_, &of_rotations_}) {
+    for (const Index j : *stops) row.push_back(state.slider_force[sliders + j]);
+    for (const Index j : *stops) {
+      const double gap = system_.stops()[static_cast<std::size_t>(j)].gap;
+      row.push_back(std::max(0.0, system_.relative_displacement(sliders + j, state.q) - gap));
+    }
+  }
 }
 
 }  // namespace rubato::analysis

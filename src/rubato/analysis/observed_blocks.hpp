@@ -59,4 +59,19 @@ class SliderBlocks {
   std::vector<Index> of_displacements_, of_rotations_;
 };
 
+/// Columns of the stops: `force` and `penetration`, of those between rotations `moment` and `penetration_angle`.
+class StopBlocks {
+ public:
+  explicit StopBlocks(const system::LocallyNonlinear& system);
+
+  void add(results::TableLayout& layout) const;
+  /// Appends the values, in the order of `add`.
+  void append(const system::State& state, std::vector<double>& row) const;
+  std::size_t width() const { return 2 * (of_displacements_.size() + of_rotations_.size()); }
+
+ private:
+  const system::LocallyNonlinear& system_;
+  std::vector<Index> of_displacements_, of_rotations_;
+};
+
 }  // namespace rubato::analysis

@@ -72,7 +72,18 @@ void visit(const model::ModelDescription& model, const Take& take_any) {
     take_any(slider.friction_coefficient, Role::limit, false);
     take_any(slider.normal_load, Role::limit, false);
   }
+  for (const auto& stop : model.stops) {
+    take(stop.gap);
+    take(stop.stiffness);
+    take(stop.damping);
+  }
   for (const auto& force : model.forces) visit_law(force.law, take_any);
+  for (const auto& force : model.distributed_forces) {
+    for (const auto& share : force.direction) take(share);
+    visit_law(force.law, take_any);
+  }
+  if (model.gravity)
+    for (const auto& component : model.gravity->acceleration) take(component);
   if (model.base_motion) {
     visit_law(model.base_motion->law, take_any);
     for (const auto& [name, value] : model.base_motion->direction) take(value);

@@ -31,7 +31,7 @@ std::string status_name(RunStatus status) {
 
 AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinear& system) {
   const double columns = 1.0 + 3.0 * static_cast<double>(plan.observed.size()) +
-                         2.0 * static_cast<double>(system.slider_count()) + (plan.energy ? 8.0 : 0.0);
+                         2.0 * static_cast<double>(system.contact_count()) + (plan.energy ? 8.0 : 0.0);
   // A number takes 8 bytes in netCDF and about 20 in CSV.
   AnalysisOutline result{"", plan.rows * columns * 28.0};
   if (plan.step > 0.0)

@@ -66,7 +66,9 @@ StaticEquilibrium equilibrium_of(const std::string& name, const Location& where,
                                             "{}; lower the load, or support it",
                                             title, slipping(found, system), list_of(found.moving, system)));
     case StaticOutcome::not_settled:
-      throw InvalidInput(where, fmt::format("{}no equilibrium was found: which sliders slip did not settle", title));
+      throw InvalidInput(
+          where, fmt::format("{}no equilibrium was found: which sliders slip and which stops are closed did not settle",
+                             title));
   }
   if (!found.state.q.allFinite())
     throw InvalidInput(where, fmt::format("{}the equilibrium is not finite; look at the loads at t = 0", title));
@@ -79,9 +81,11 @@ RunReport run_static(const std::string& name, const Location& where, const model
   const std::vector<model::Held> held = held_of("", description, system);
   const ObservedBlocks observed(observed_or_all(description.observe, system));
   const SliderBlocks sliders(system);
+  const StopBlocks stops(system);
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   observed.add(layout, {ObservedBlocks::Quantity::position});
   sliders.add(layout);
+  stops.add(layout);
   std::vector<std::string> forces, moments;
   std::vector<double> row{0.0}, last;
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -95,6 +99,7 @@ RunReport run_static(const std::string& name, const Location& where, const model
     layout.blocks.push_back({"reaction_moment", "N m", "moment that holds the rotation", "held_rotation", moments});
   observed.append({&found.state.q}, row);
   sliders.append(found.state, row);
+  stops.append(found.state, row);
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!system.is_rotation(held[i].coordinate)) row.push_back(found.reaction[static_cast<Index>(i)]);
   row.insert(row.end(), last.begin(), last.end());

@@ -17,17 +17,18 @@ constexpr double small_pivot = 1e-8;
 // The motion that goes with it decides: its energy over the sum of the absolute terms of that energy. The same free
 // frame has 1e-17 with any number of elements; well supported it has 1e-6 with 60 and 3e-12 with 33,000.
 constexpr double no_energy = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double drift = 1e-9;   // of its stiffness that an open stop lends where nothing else resists
 constexpr double shift = 1e-12;  // of the inverse iteration; larger ones leave bending in the motion of a fine mesh
 
-/// Energy of the sliders and their forces for given displacements.
-class Sliders {
+/// Energy of the sliders and stops and their forces for given displacements.
+class Contacts {
  public:
-  explicit Sliders(const system::LocallyNonlinear& system) : system_(system), force(system.slider_count()) {}
+  explicit Contacts(const system::LocallyNonlinear& system) : system_(system), force(system.contact_count()) {}
 
   /// Forces at q; returns the elastic energy less the friction work, the potential whose derivative they are.
   double load(const Vector& q) {
     double energy = 0.0;
-    for (Index i = 0; i < force.size(); ++i) {
+    for (Index i = 0; i < system_.slider_count(); ++i) {
       const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
       const double trial = slider.stiffness * system_.relative_displacement(i, q);
       force[i] = std::clamp(trial, -slider.limit, slider.limit);
@@ -35,11 +36,22 @@ class Sliders {
                                                  : slider.limit * (std::abs(trial) - 0.5 * slider.limit)) /
                 slider.stiffness;
     }
+    for (Index j = 0; j < system_.stop_count(); ++j) {
+      const auto& stop = system_.stops()[static_cast<std::size_t>(j)];
+      const Index i = system_.slider_count() + j;
+      const double depth = std::max(0.0, system_.relative_displacement(i, q) - stop.gap);
+      force[i] = stop.stiffness * depth;
+      energy += 0.5 * force[i] * depth;
+    }
     return energy;
   }
-  std::vector<char> sticking(const Vector& q) const {
-    std::vector<char> set(system_.sliders().size());
-    for (std::size_t i = 0; i < set.size(); ++i)
+  /// Sliders that stick and stops that are closed.
+  std::vector<char> holding(const Vector& q) const {
+    std::vector<char> set(system_.contacts().size());
+    const std::size_t sliders = system_.sliders().size();
+    for (std::size_t i = sliders; i < set.size(); ++i)
+      set[i] = system_.relative_displacement(static_cast<Index>(i), q) > system_.stops()[i - sliders].gap;
+    for (std::size_t i = 0; i < sliders; ++i)
       set[i] = std::abs(system_.sliders()[i].stiffness * system_.relative_displacement(static_cast<Index>(i), q)) <=
                system_.sliders()[i].limit;
     return set;
@@ -55,7 +67,7 @@ class Sliders {
 class StaticSolver {
  public:
   StaticSolver(const system::LocallyNonlinear& system, std::span<const model::Held> held)
-      : system_(system), held_(held), sliders_(system), load_(system.size()), place_(system.size()) {
+      : system_(system), held_(held), contacts_(system), load_(system.size()), place_(system.size()) {
     system::Loads loads = system.loads();
     loads.evaluate(0.0, load_, model::Side::left);
     for (const auto& force : system.held_forces()) load_[force.coordinate] += force.value;
@@ -75,17 +87,21 @@ class StaticSolver {
   }
 
   StaticEquilibrium solve() {
-    std::vector<char> set(system_.sliders().size(), 1);
-    // Each slider changes its state a few times at most; the energy falls with every step.
+    // Sliders begin stuck, stops as they are without displacement.
+    std::vector<char> set = contacts_.holding(result_.state.q);
+    std::fill_n(set.begin(), system_.sliders().size(), 1);
+    // Each contact changes its state a few times at most; the energy falls with every step.
     const int most = 20 + 10 * static_cast<int>(set.size());
     for (int iteration = 0; iteration < most; ++iteration) {
-      if (!factorise(set)) {
-        const bool all_stick = std::find(set.begin(), set.end(), 0) == set.end();
-        result_.outcome = all_stick ? StaticOutcome::mechanism : StaticOutcome::gives_way;
-        return std::move(result_);
+      if (!factorise(set, 0.0)) {
+        // What only open stops could hold drifts to the first of them.
+        const Index met = has_open_stop(set) && factorise(set, drift) ? drift_to_stop(set) : -1;
+        if (met < 0) return no_equilibrium(set);
+        set[static_cast<std::size_t>(met)] = 1;
+        continue;
       }
       step();
-      std::vector<char> next = sliders_.sticking(result_.state.q);
+      std::vector<char> next = contacts_.holding(result_.state.q);
       if (next == set) {
         for (int refinement = 0; refinement < 2; ++refinement) step();
         finish();
@@ -98,7 +114,52 @@ class StaticSolver {
   }
 
  private:
-  SparseMatrix tangent(const std::vector<char>& set) const {
+  bool has_open_stop(const std::vector<char>& set) const {
+    return std::find(set.begin() + system_.slider_count(), set.end(), 0) != set.end();
+  }
+
+  Vector change_of(const Vector& residual) const {
+    Vector right(static_cast<Index>(free_.size()));
+    for (std::size_t i = 0; i < free_.size(); ++i) right[static_cast<Index>(i)] = residual[free_[i]];
+    const Vector solution = factor_.solve(right);
+    Vector change = Vector::Zero(system_.size());
+    for (std::size_t i = 0; i < free_.size(); ++i) change[free_[i]] = solution[static_cast<Index>(i)];
+    return change;
+  }
+
+  /// Moves along the unbalanced forces until the first open stop closes, and returns it; -1 if none is on the way.
+  Index drift_to_stop(const std::vector<char>& set) {
+    Vector& q = result_.state.q;
+    const Vector change = change_of(unbalanced(q));
+    double nearest = HUGE_VAL;
+    Index met = -1;
+    for (Index i = system_.slider_count(); i < system_.contact_count(); ++i) {
+      if (set[static_cast<std::size_t>(i)]) continue;
+      const double gap = system_.stops()[static_cast<std::size_t>(i - system_.slider_count())].gap;
+      const double approach = system_.relative_displacement(i, change);
+      const double length = (gap - system_.relative_displacement(i, q)) / approach;
+      if (!(approach > 0.0 && length < nearest)) continue;
+      nearest = length;
+      met = i;
+    }
+    if (met >= 0) q += nearest * change;
+    return met;
+  }
+
+  StaticEquilibrium no_equilibrium(const std::vector<char>& set) {
+    const auto sliders_end = set.begin() + system_.slider_count();
+    const bool all_stick = std::find(set.begin(), sliders_end, 0) == sliders_end;
+    result_.outcome = all_stick ? StaticOutcome::mechanism : StaticOutcome::gives_way;
+    return std::move(result_);
+  }
+
+  double stiffness_of(std::size_t contact) const {
+    const std::size_t sliders = system_.sliders().size();
+    return contact < sliders ? system_.sliders()[contact].stiffness : system_.stops()[contact - sliders].stiffness;
+  }
+
+  /// @param open  share of their stiffness that open stops have
+  SparseMatrix tangent(const std::vector<char>& set, double open) const {
     std::vector<Eigen::Triplet<double>> entries;
     const SparseMatrix& k = system_.stiffness();
     entries.reserve(static_cast<std::size_t>(k.nonZeros()) + free_.size() + 4 * set.size());
@@ -109,13 +170,15 @@ class StaticSolver {
     for (Index column = 0; column < k.cols(); ++column)
       for (SparseMatrix::InnerIterator entry(k, column); entry; ++entry) add(entry.row(), column, entry.value());
     for (std::size_t i = 0; i < set.size(); ++i) {
-      const auto& slider = system_.sliders()[i];
-      if (!set[i]) continue;
-      if (slider.first != ground) add(slider.first, slider.first, slider.stiffness);
-      if (slider.second != ground) add(slider.second, slider.second, slider.stiffness);
-      if (slider.first == ground || slider.second == ground) continue;
-      add(slider.first, slider.second, -slider.stiffness);
-      add(slider.second, slider.first, -slider.stiffness);
+      const double share = set[i] ? 1.0 : i < system_.sliders().size() ? 0.0 : open;
+      if (share == 0.0) continue;
+      const auto [first, second] = system_.contacts()[i];
+      const double stiffness = share * stiffness_of(i);
+      if (first != ground) add(first, first, stiffness);
+      if (second != ground) add(second, second, stiffness);
+      if (first == ground || second == ground) continue;
+      add(first, second, -stiffness);
+      add(second, first, -stiffness);
     }
     const auto n = static_cast<Index>(free_.size());
     for (Index i = 0; i < n; ++i) entries.emplace_back(i, i, 0.0);  // the diagonal is always there
@@ -124,9 +187,9 @@ class StaticSolver {
     return matrix;
   }
 
-  bool factorise(const std::vector<char>& set) {
+  bool factorise(const std::vector<char>& set, double open) {
     if (free_.empty()) return true;
-    const SparseMatrix matrix = tangent(set);
+    const SparseMatrix matrix = tangent(set, open);
     factor_.compute(matrix);
     ++result_.factorisations;
     const Vector diagonal = matrix.diagonal();
@@ -146,6 +209,7 @@ class StaticSolver {
       ++result_.factorisations;
       if (factor_.info() == Eigen::Success) return true;
     }
+    result_.moving.clear();
     name_moving(motion, diagonal);
     return false;
   }
@@ -183,30 +247,26 @@ class StaticSolver {
     const double before = energy(q);
     const Vector residual = unbalanced(q);
     if (free_.empty()) return;
-    Vector right(static_cast<Index>(free_.size()));
-    for (std::size_t i = 0; i < free_.size(); ++i) right[static_cast<Index>(i)] = residual[free_[i]];
-    const Vector change = factor_.solve(right);
-    const Vector from = q;
+    const Vector from = q, change = change_of(residual);
     for (double length = 1.0; length > 1e-6; length *= 0.5) {
-      for (std::size_t i = 0; i < free_.size(); ++i)
-        q[free_[i]] = from[free_[i]] + length * change[static_cast<Index>(i)];
-      // Without sliders the full step is exact, and round-off must not shorten it.
-      if (system_.slider_count() == 0 || energy(q) <= before + 1e-10 * std::abs(before)) return;
+      q = from + length * change;
+      // Without contacts the full step is exact, and round-off must not shorten it.
+      if (system_.contact_count() == 0 || energy(q) <= before + 1e-10 * std::abs(before)) return;
     }
   }
 
   Vector unbalanced(const Vector& q) {
-    sliders_.load(q);
+    contacts_.load(q);
     Vector residual = load_ - system_.stiffness() * q;
-    system_.add_slider_forces(sliders_.force, -1.0, residual);
+    system_.add_slider_forces(contacts_.force, -1.0, residual);
     return residual;
   }
 
-  double energy(const Vector& q) { return 0.5 * q.dot(system_.stiffness() * q) - load_.dot(q) + sliders_.load(q); }
+  double energy(const Vector& q) { return 0.5 * q.dot(system_.stiffness() * q) - load_.dot(q) + contacts_.load(q); }
 
   void finish() {
     const Vector residual = unbalanced(result_.state.q);
-    result_.state.slider_force = sliders_.force;
+    result_.state.slider_force = contacts_.force;
     result_.reaction.resize(static_cast<Index>(held_.size()));
     for (std::size_t i = 0; i < held_.size(); ++i)
       result_.reaction[static_cast<Index>(i)] = -residual[held_[i].coordinate];
@@ -215,7 +275,7 @@ class StaticSolver {
 
   const system::LocallyNonlinear& system_;
   std::span<const model::Held> held_;
-  Sliders sliders_;
+  Contacts contacts_;
   Vector load_;
   std::vector<Index> place_, free_;  // place of a coordinate among the free ones, and back
   Factor factor_;

@@ -11,7 +11,7 @@ enum class StaticOutcome {
   found,
   mechanism,   ///< with all sliders stuck some motion meets no resistance
   gives_way,   ///< the sliders that slip leave a motion without resistance: no equilibrium
-  not_settled  ///< the set of slipping sliders did not settle
+  not_settled  ///< the set of slipping sliders and closed stops did not settle
 };
 
 /// A state of equilibrium, and what was found on the way to it.
@@ -27,10 +27,10 @@ struct StaticEquilibrium {
 ///
 ///   K q + B fc = f(0-) + held forces,   fc = clamp(kT u, -limit, +limit),   u = B^T q,   q_p = held displacement
 ///
-/// The sliders are loaded from zero in one go: their state is the minimum of a convex energy, and so is q, unique where
-/// the stiffness with the sticking sliders is positive definite. Newton's iteration on the set of sticking sliders,
-/// with a search along the energy; two refinements of the last solution. Loads are taken just before t = 0: a table
-/// that jumps there is released.
+/// and the stops push with fs = max(0, k (u - gap)). The sliders are loaded from zero in one go: their state is the
+/// minimum of a convex energy, and so is q, unique where the stiffness with the sticking sliders is positive definite.
+/// Newton's iteration on the set of sticking sliders and closed stops, with a search along the energy; two refinements
+/// of the last solution. Loads are taken just before t = 0: a table that jumps there is released.
 /// @param held  coordinates with their values, each once
 StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held);
 

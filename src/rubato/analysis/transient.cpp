@@ -97,6 +97,13 @@ class TransientObserver final : public integrate::Observer {
   bool last_recorded_ = false;
 };
 
+std::string contact_name(Index contact, const system::LocallyNonlinear& system) {
+  if (contact < 0) return "";
+  const Index stop = contact - system.slider_count();
+  return stop < 0 ? system.sliders()[static_cast<std::size_t>(contact)].name
+                  : system.stops()[static_cast<std::size_t>(stop)].name;
+}
+
 std::string reason(const integrate::MarchReport& report, const system::LocallyNonlinear& system) {
   const auto coordinate = [&](Index i) {
     return i >= 0 ? fmt::format(" at coordinate \"{}\"", system.coordinates()[static_cast<std::size_t>(i)]) : "";
@@ -110,9 +117,9 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
           "unconditionally stable method)";
       break;
     case integrate::StepOutcome::not_converged:
-      what =
-          fmt::format("the sliders found no consistent state (worst: \"{}\")",
-                      report.step.worst >= 0 ? system.sliders()[static_cast<std::size_t>(report.step.worst)].name : "");
+      what = fmt::format("the {} found no consistent state (worst: \"{}\")",
+                         system.stop_count() > 0 ? "sliders and stops" : "sliders",
+                         contact_name(report.step.worst, system));
       remedy = "take a smaller step";
       break;
     case integrate::StepOutcome::singular:

@@ -34,24 +34,32 @@ results::Block scalar(const std::string& variable, const std::string& descriptio
 
 TransientRecorder::TransientRecorder(const std::string& name, const TransientPlan& plan,
                                      const system::LocallyNonlinear& system, results::Sink& sink)
-    : system_(system), observed_(plan.observed), sliders_(system), equilibrium_(system), acceleration_(system.size()) {
+    : system_(system),
+      observed_(plan.observed),
+      sliders_(system),
+      stops_(system),
+      equilibrium_(system),
+      acceleration_(system.size()) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time{"time", "s", "time", "", {}};
   results::TableLayout layout{name, "", "time", {time}, attributes_of(plan, system)};
   observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
   sliders_.add(layout);
+  stops_.add(layout);
   rows_ = sink.open(layout);
-  if (plan.energy)
-    energy_rows_ = sink.open({name,
-                              "energy",
-                              "time",
-                              {time, scalar("kinetic", "kinetic energy"), scalar("strain", "strain energy"),
-                               scalar("slider_stored", "elastic energy of the sliders"),
-                               scalar("damper_dissipated", "dissipated by the dampers since the start"),
-                               scalar("slider_dissipated", "dissipated by slip since the start"),
-                               scalar("load_work", "work of the loads since the start"),
-                               scalar("residue", "what the method itself made (+) or lost (-)")},
-                              {{"type", "energy"}}});
+  if (!plan.energy) return;
+  results::TableLayout energy{name, "energy", "time", {time}, {{"type", "energy"}}};
+  auto& blocks = energy.blocks;
+  blocks.push_back(scalar("kinetic", "kinetic energy"));
+  blocks.push_back(scalar("strain", "strain energy"));
+  blocks.push_back(scalar("slider_stored", "elastic energy of the sliders"));
+  if (system.stop_count() > 0) blocks.push_back(scalar("stop_stored", "elastic energy of the stops"));
+  blocks.push_back(scalar("damper_dissipated", "dissipated by the dampers since the start"));
+  blocks.push_back(scalar("slider_dissipated", "dissipated by slip since the start"));
+  if (system.stop_count() > 0) blocks.push_back(scalar("stop_dissipated", "dissipated by the stops since the start"));
+  blocks.push_back(scalar("load_work", "work of the loads since the start"));
+  blocks.push_back(scalar("residue", "what the method itself made (+) or lost (-)"));
+  energy_rows_ = sink.open(energy);
 }
 
 void TransientRecorder::record(const system::State& state, const Energy* energy, const Vector* acceleration) {
@@ -63,18 +71,18 @@ void TransientRecorder::record(const system::State& state, const Energy* energy,
   row_.push_back(state.t);
   observed_.append({&state.q, &state.v, &acceleration_}, row_);
   sliders_.append(state, row_);
+  stops_.append(state, row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;
-  const double ledger[] = {state.t,
-                           energy->kinetic,
-                           energy->strain,
-                           energy->slider_stored,
-                           energy->damper_dissipated,
-                           energy->slider_dissipated,
-                           energy->load_work,
-                           energy->residue()};
-  energy_rows_->append(ledger);
+  row_ = {state.t, energy->kinetic, energy->strain, energy->slider_stored};
+  if (system_.stop_count() > 0) row_.push_back(energy->stop_stored);
+  row_.push_back(energy->damper_dissipated);
+  row_.push_back(energy->slider_dissipated);
+  if (system_.stop_count() > 0) row_.push_back(energy->stop_dissipated);
+  row_.push_back(energy->load_work);
+  row_.push_back(energy->residue());
+  energy_rows_->append(row_);
 }
 
 }  // namespace rubato::analysis

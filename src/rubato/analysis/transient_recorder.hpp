@@ -12,7 +12,7 @@
 namespace rubato::analysis {
 
 /// Turns states into rows: time, position, velocity and acceleration of what is observed, force and slip of every
-/// slider, and the energy ledger in a table of its own.
+/// slider, force and penetration of every stop, and the energy ledger in a table of its own.
 class TransientRecorder {
  public:
   TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
@@ -28,6 +28,7 @@ class TransientRecorder {
   const system::LocallyNonlinear& system_;
   ObservedBlocks observed_;
   SliderBlocks sliders_;
+  StopBlocks stops_;
   system::EquilibriumAcceleration equilibrium_;
   Vector acceleration_;
   std::vector<double> row_;

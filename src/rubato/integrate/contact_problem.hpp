@@ -11,12 +11,17 @@
 
 namespace rubato::integrate {
 
-/// The forces of all sliders at the end of a step, from what the step gives them without friction.
+/// The forces of all contacts, sliders and then stops, at the end of a step, from what the step gives them without.
 ///
-/// The displacement of the sliders depends on their forces by u = u_free - W fc with the contact compliance W [m x m]
-/// [m/N], and the return map of each is fc = clamp(fc0 + kT (u - u0), -L, L). Together
+/// The displacement of the contacts depends on their forces by u = u_free - W fc with the contact compliance W [m x m]
+/// [m/N], and their velocity by du/dt = v_free - W' fc. The return map of a slider is fc = clamp(fc0 + kT (u - u0), -L,
+/// L), a stop pushes with fs = max(0, k (u - gap) + c du/dt). Together
 ///
-///   fc = clamp(trial - Q fc, -L, L),   trial = fc0 + kT (u_free - u0),   Q = diag(kT) W
+///   sliders  fc = clamp(trial - Q fc, -L, L),   trial = fc0 + kT (u_free - u0),        Q = kT W
+///   stops    fs = max(0, trial - Q fc),         trial = k (u_free - gap) + c v_free,   Q = k W + c W'
+///
+/// in their rows. A damped stop that its own damping would throw back over the gap within the step touches: the gap is
+/// closed, u = gap, by a force between zero and trial - Q fc.
 ///
 /// With W symmetric and positive semi-definite the solution is unique (a box-constrained linear complementarity problem
 /// with a P-matrix). The set of sticking sliders is found by a semismooth Newton iteration (exact at a finite set: its
@@ -24,28 +29,38 @@ namespace rubato::integrate {
 /// The result depends on the set only, not on the way to it.
 class ContactProblem {
  public:
-  /// @param compliance  W [m x m]
+  /// @param compliance           W [m x m] [m/N]
+  /// @param velocity_compliance  W' [m x m] [m/(N s)]; read only where there are stops
+  void reset(const Matrix& compliance, const Matrix& velocity_compliance, const std::vector<model::Slider>& sliders,
+             const std::vector<model::Stop>& stops);
+  /// Sliders alone.
   void reset(const Matrix& compliance, const std::vector<model::Slider>& sliders);
 
-  /// @param trial     fc0 + kT (u_free - u0) [m] [N]
-  /// @param previous  fc0 [m]: where it stands on its limit tells where to begin, not where to end
-  /// @param force     fc [m]
+  /// @param trial        as above [m] [N]
+  /// @param previous     fc0 [m]: where it stands on its limit tells where to begin, not where to end
+  /// @param force        fc [m]
+  /// @param penetration  u_free - gap [m] [m]; read for stops only
   /// @return false if no consistent set was found (W not positive semi-definite, or not finite input)
-  bool solve(const double* trial, const double* previous, double* force);
+  bool solve(const double* trial, const double* previous, double* force, const double* penetration = nullptr);
 
-  /// The slider that was inconsistent when solve last failed.
+  /// The contact that was inconsistent when solve last failed.
   Index worst() const { return worst_; }
 
  private:
   bool solve_two(const double* trial, const double* previous, double* force);
-  bool solve_many(const double* trial, const double* previous, double* force);
-  void force_of_the_set(const double* trial, double* force);
-  /// The state that slider i takes given the forces of all: -1, +1 slipping, 0 sticking.
-  int state_of(Index i, const double* trial, const double* force) const;
+  bool solve_stop(const double* trial, double* force, const double* penetration) const;
+  bool solve_many(const double* trial, const double* previous, double* force, const double* penetration);
+  void force_of_the_set(const double* trial, double* force, const double* penetration);
+  /// The state that contact i takes given the forces of all. Sliders: -1, +1 slipping, 0 sticking; stops: 0 pushing,
+  /// +1 open, 2 touching.
+  int state_of(Index i, const double* trial, const double* force, const double* penetration) const;
+  int stop_state(Index i, double rest, double size, const double* force, const double* penetration) const;
 
-  Index m_ = 0;
-  Matrix scaled_compliance_;  // Q
-  Vector limit_;
+  Index m_ = 0, sliders_ = 0;  // contacts, and how many of them are sliders
+  Matrix compliance_;          // W, kept for stops
+  Vector touching_scale_;      // turns metres into newtons in the rows of touching stops
+  Matrix scaled_compliance_;   // Q
+  Vector limit_;               // of stops zero: open is their state at it
   double q_[2][2] = {{0, 0}, {0, 0}};
   double l_[2] = {0, 0};
   std::vector<int> set_, next_, factored_set_;
@@ -55,13 +70,16 @@ class ContactProblem {
   Index worst_ = -1;
 };
 
-inline bool ContactProblem::solve(const double* trial, const double* previous, double* force) {
+inline bool ContactProblem::solve(const double* trial, const double* previous, double* force,
+                                  const double* penetration) {
   if (m_ == 0) return true;
+  if (m_ > sliders_)
+    return m_ == 1 ? solve_stop(trial, force, penetration) : solve_many(trial, previous, force, penetration);
   if (m_ == 1) {
     force[0] = std::clamp(trial[0] / (1.0 + q_[0][0]), -l_[0], l_[0]);
     return true;
   }
-  return m_ == 2 ? solve_two(trial, previous, force) : solve_many(trial, previous, force);
+  return m_ == 2 ? solve_two(trial, previous, force) : solve_many(trial, previous, force, penetration);
 }
 
 }  // namespace rubato::integrate

@@ -127,10 +127,10 @@ struct Mode {
 };
 
 std::vector<Mode> modes_of(const system::LocallyNonlinear& system) {
-  const SparseMatrix stuck = system.stuck_stiffness();
+  const SparseMatrix stuck = system.closed_stiffness(), damping = system.closed_damping();
   std::vector<Mode> modes;
   const auto add = [&](const Vector& shape) {  // phi^T M phi = 1
-    modes.push_back({shape.dot(stuck * shape), shape.dot(system.damping() * shape), shape});
+    modes.push_back({shape.dot(stuck * shape), shape.dot(damping * shape), shape});
   };
   constexpr Index all_modes = 1000;
   if (system.size() <= all_modes) {

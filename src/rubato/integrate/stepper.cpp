@@ -20,6 +20,7 @@ std::unique_ptr<Stepper> make_stepper(const Method& method, const system::Locall
 
 system::State consistent_start(const system::LocallyNonlinear& system, system::State given) {
   system::EquilibriumAcceleration acceleration(system);
+  system.set_stop_forces(given);
   given.auxiliary_acceleration.resize(system.size());
   acceleration(given, given.auxiliary_acceleration);
   return given;

@@ -34,8 +34,12 @@ double root(const Function& function) {
   return high;
 }
 
-double relative(const Vector& x, Index first, Index second) {
-  return (first == ground ? 0.0 : x[first]) - (second == ground ? 0.0 : x[second]);
+constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
+
+/// The largest of the displacements that make a relative one: what its round-off follows.
+double size_of(const system::LocallyNonlinear::Ends& ends, const Vector& q) {
+  return (ends.first == ground ? 0.0 : std::abs(q[ends.first])) +
+         (ends.second == ground ? 0.0 : std::abs(q[ends.second]));
 }
 
 }  // namespace
@@ -61,21 +65,38 @@ bool StructureTimeline::jumps_at(double t) {
 
 void StructureTimeline::restart(system::State& state) { equilibrium_(state, state.auxiliary_acceleration); }
 
-// The force of a slider is the same on both sides of a transition, and so is the acceleration. The rate of the force is
-// lost when a slider begins to slip, kT du/dt; one that comes to rest has none on either side.
+bool StructureTimeline::has_ended_at(Index contact, const system::State& from, const system::State& to) {
+  const GuardValue end = guard(contact, from, to);
+  return end.value <= 2.0 * resolution_ * std::abs(end.rate);
+}
+
+// A damped stop that closes pushes at once. All other forces are the same on both sides of a transition, and so is the
+// acceleration: what jumps is their rate. A slider that begins to slip loses kT du/dt, one that comes to rest has none
+// on either side; a stop gains or loses k du/dt + c d2u/dt2.
 bool StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
-  if (shift == 0.0) return false;
-  bool slips = false;
+  bool has_kink = false, has_jump = false;
   beyond_.slider_force = state.slider_force;
-  for (Index i = 0; i < system_.slider_count(); ++i) {
-    if (watch_of(i, before) != Watch::limit) continue;
-    const GuardValue end = guard(i, before, state);
-    if (!(end.value <= 2.0 * resolution_ * std::abs(end.rate))) continue;
-    slips = true;
-    const auto& s = system_.sliders()[static_cast<std::size_t>(i)];
-    beyond_.slider_force[i] -= shift * s.stiffness * relative(state.v, s.first, s.second);
+  for (Index i = 0; i < system_.contact_count(); ++i) {
+    const Watch watch = watch_of(i, before);
+    if (watch == Watch::nothing || watch == Watch::rest_after_positive || watch == Watch::rest_after_negative) continue;
+    if (!has_ended_at(i, before, state)) continue;
+    has_kink = true;
+    const Path path = path_of(i, before, state);
+    if (watch == Watch::limit) {
+      beyond_.slider_force[i] -= shift * system_.sliders()[static_cast<std::size_t>(i)].stiffness * path.v1;
+      continue;
+    }
+    const auto& stop = stop_of(i);
+    const double rate = stop.stiffness * path.v1 + stop.damping * path.final_acceleration();
+    if (watch == Watch::closing && stop.damping > 0.0) {
+      has_jump = true;
+      state.slider_force[i] = stop.damping * path.v1;
+    } else {
+      beyond_.slider_force[i] += watch == Watch::opening ? -shift * rate : shift * rate;
+    }
   }
-  if (!slips) return false;
+  if (has_jump) restart(state);
+  if (has_jump || !has_kink || shift == 0.0) return has_jump;
   beyond_.t = state.t;
   beyond_.q = state.q;
   beyond_.v = state.v;
@@ -85,34 +106,48 @@ bool StructureTimeline::pass(const system::State& before, system::State& state, 
   return false;
 }
 
-StructureTimeline::Path StructureTimeline::path_of(Index slider, const system::State& from,
+StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::State& from,
                                                    const system::State& to) const {
-  const auto& s = system_.sliders()[static_cast<std::size_t>(slider)];
-  return {to.t - from.t, relative(from.q, s.first, s.second), relative(from.v, s.first, s.second),
-          relative(to.q, s.first, s.second), relative(to.v, s.first, s.second)};
+  return {to.t - from.t, system_.relative_displacement(contact, from.q), system_.relative_displacement(contact, from.v),
+          system_.relative_displacement(contact, to.q), system_.relative_displacement(contact, to.v)};
 }
 
-StructureTimeline::Watch StructureTimeline::watch_of(Index slider, const system::State& from) const {
-  const auto& s = system_.sliders()[static_cast<std::size_t>(slider)];
-  if (s.limit == 0.0) return Watch::nothing;
-  const double force = from.slider_force[slider], velocity = relative(from.v, s.first, s.second);
-  const double ends =
-      (s.first == ground ? 0.0 : std::abs(from.q[s.first])) + (s.second == ground ? 0.0 : std::abs(from.q[s.second]));
-  const double round_off = 64.0 * std::numeric_limits<double>::epsilon() * (s.limit + s.stiffness * ends);
-  if (s.limit - std::abs(force) > std::max(round_off, 2.0 * resolution_ * s.stiffness * std::abs(velocity)))
+StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system::State& from) const {
+  return contact < system_.slider_count() ? watch_of_slider(contact, from) : watch_of_stop(contact, from);
+}
+
+StructureTimeline::Watch StructureTimeline::watch_of_slider(Index i, const system::State& from) const {
+  const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+  if (slider.limit == 0.0) return Watch::nothing;
+  const double force = from.slider_force[i], velocity = system_.relative_displacement(i, from.v);
+  const double least =
+      round_off * (slider.limit + slider.stiffness * size_of(system_.contacts()[static_cast<std::size_t>(i)], from.q));
+  if (slider.limit - std::abs(force) > std::max(least, 2.0 * resolution_ * slider.stiffness * std::abs(velocity)))
     return Watch::limit;
   const double side = force > 0.0 ? 1.0 : -1.0;
-  const double acceleration = relative(from.auxiliary_acceleration, s.first, s.second);
+  const double acceleration = system_.relative_displacement(i, from.auxiliary_acceleration);
   const bool rests = std::abs(velocity) <= 2.0 * resolution_ * std::abs(acceleration) || velocity == 0.0;
   if (!(side * (rests ? acceleration : velocity) > 0.0)) return Watch::limit;
   return side > 0.0 ? Watch::rest_after_positive : Watch::rest_after_negative;
 }
 
+// At the gap, to what a located step leaves, the velocity tells.
+StructureTimeline::Watch StructureTimeline::watch_of_stop(Index i, const system::State& from) const {
+  const auto& stop = stop_of(i);
+  const double depth = system_.relative_displacement(i, from.q) - stop.gap;
+  const double velocity = system_.relative_displacement(i, from.v);
+  const double size = size_of(system_.contacts()[static_cast<std::size_t>(i)], from.q) + std::abs(stop.gap);
+  if (std::abs(depth) <= std::max(round_off * size, 2.0 * resolution_ * std::abs(velocity)))
+    return velocity > 0.0 ? Watch::opening : Watch::closing;
+  if (depth < 0.0) return Watch::closing;
+  return from.slider_force[i] > 0.0 ? Watch::opening : Watch::pushing_again;
+}
+
 GuardValue StructureTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const Path path = path_of(guard, from, to);
-  const auto& slider = system_.sliders()[static_cast<std::size_t>(guard)];
   switch (watch_of(guard, from)) {
     case Watch::limit: {
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(guard)];
       const double force = from.slider_force[guard] + slider.stiffness * (path.u1 - path.u0);
       return {slider.limit - std::abs(force), -std::copysign(slider.stiffness, force) * path.v1};
     }
@@ -120,29 +155,75 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
       return {path.v1, path.final_acceleration()};
     case Watch::rest_after_negative:
       return {-path.v1, -path.final_acceleration()};
+    case Watch::closing: {
+      const auto& stop = stop_of(guard);
+      const double size = size_of(system_.contacts()[static_cast<std::size_t>(guard)], to.q) + std::abs(stop.gap);
+      // Held at the gap by the force of the step itself: how long ago it closed only the bracket tells.
+      if (stop.damping > 0.0 && to.slider_force[guard] > 0.0 && path.u1 - stop.gap <= round_off * size)
+        return {-1.0, 0.0};
+      return {stop.gap - path.u1, -path.v1};
+    }
+    case Watch::opening:
+    case Watch::pushing_again: {
+      const auto& stop = stop_of(guard);
+      const double sign = watch_of(guard, from) == Watch::opening ? 1.0 : -1.0;
+      if (sign < 0.0 && path.u1 <= stop.gap) return {1.0, 0.0};  // left before
+      return {sign * (stop.stiffness * (path.u1 - stop.gap) + stop.damping * path.v1),
+              sign * (stop.stiffness * path.v1 + stop.damping * path.final_acceleration())};
+    }
     case Watch::nothing:
       break;
   }
   return {1.0, 0.0};
 }
 
+/// The share of the step at which a guard that is negative at its end vanishes on the path.
+double StructureTimeline::share_of(Index contact, const system::State& from, const system::State& to) const {
+  const Path path = path_of(contact, from, to);
+  const Watch watch = watch_of(contact, from);
+  switch (watch) {
+    case Watch::limit: {
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(contact)];
+      const double sign = path.u1 > path.u0 ? 1.0 : -1.0, force = from.slider_force[contact];
+      return root([&](double s) {
+        return slider.limit - sign * (force + slider.stiffness * (path.displacement(s) - path.u0));
+      });
+    }
+    case Watch::rest_after_positive:
+      return root([&](double s) { return path.velocity(s); });
+    case Watch::rest_after_negative:
+      return root([&](double s) { return -path.velocity(s); });
+    case Watch::closing: {
+      const auto& stop = stop_of(contact);
+      return root([&](double s) { return stop.gap - path.displacement(s); });
+    }
+    case Watch::opening:
+    case Watch::pushing_again: {
+      const auto& stop = stop_of(contact);
+      const double sign = watch == Watch::opening ? 1.0 : -1.0;
+      return root([&](double s) {
+        return sign * (stop.stiffness * (path.displacement(s) - stop.gap) + stop.damping * path.velocity(s));
+      });
+    }
+    case Watch::nothing:
+      break;
+  }
+  return 1.0;
+}
+
 Crossing StructureTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
   Crossing first;
   first.share = HUGE_VAL;
-  for (Index i = 0; i < system_.slider_count(); ++i) {
+  for (Index i = 0; i < system_.contact_count(); ++i) {
     if (!(guard(i, from, to).value < 0.0)) continue;
-    const Path path = path_of(i, from, to);
-    const Watch watch = watch_of(i, from);
-    const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
-    const bool is_positive = watch == Watch::limit ? path.u1 > path.u0 : watch == Watch::rest_after_positive;
-    const double sign = is_positive ? 1.0 : -1.0;
-    const double share = root([&](double s) {
-      if (watch != Watch::limit) return sign * path.velocity(s);
-      return slider.limit - sign * (from.slider_force[i] + slider.stiffness * (path.displacement(s) - path.u0));
-    });
+    const double share = share_of(i, from, to);
     if (share >= least && share < first.share) first = {i, share};
   }
   return first;
+}
+
+const model::Stop& StructureTimeline::stop_of(Index contact) const {
+  return system_.stops()[static_cast<std::size_t>(contact - system_.slider_count())];
 }
 
 }  // namespace rubato::integrate

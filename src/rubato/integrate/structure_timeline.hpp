@@ -5,10 +5,13 @@
 
 namespace rubato::integrate {
 
-/// The timeline of a structure: rows of tables of loads, and its sliders, guard i watching slider i.
+/// The timeline of a structure: rows of tables of loads, and its contacts, guard i watching contact i.
 ///
-///   sticking   limit - |fc0 + kT (u - u0)|      the force reaches its limit
-///   slipping   +-du/dt, positive outward         the slip comes to rest
+///   sticking slider   limit - |fc0 + kT (u - u0)|    the force reaches its limit
+///   slipping slider   +-du/dt, positive outward      the slip comes to rest
+///   open stop         gap - u                        the gap closes
+///   pushing stop      k (u - gap) + c du/dt          the force vanishes
+///   lagging stop      the negative of that           a damped stop that has let go pushes again before it is open
 ///
 /// A slider at its limit slips if it moves outward, or if it is at rest and is accelerated outward.
 class StructureTimeline final : public Timeline {
@@ -25,11 +28,16 @@ class StructureTimeline final : public Timeline {
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
  private:
-  enum class Watch { nothing, limit, rest_after_positive, rest_after_negative };
+  enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again };
   struct Path;
 
-  Path path_of(Index slider, const system::State& from, const system::State& to) const;
-  Watch watch_of(Index slider, const system::State& from) const;
+  Path path_of(Index contact, const system::State& from, const system::State& to) const;
+  Watch watch_of(Index contact, const system::State& from) const;
+  Watch watch_of_slider(Index slider, const system::State& from) const;
+  Watch watch_of_stop(Index contact, const system::State& from) const;
+  double share_of(Index contact, const system::State& from, const system::State& to) const;
+  const model::Stop& stop_of(Index contact) const;
+  bool has_ended_at(Index contact, const system::State& from, const system::State& to);
 
   const system::LocallyNonlinear& system_;
   double resolution_;

@@ -174,6 +174,18 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     slider.normal_load = reader.quantity("normal_load");
     reader.finish();
   }
+  for (TomlReader& reader : root.tables("stop")) {
+    const std::string name = reader.optional_text("name").value_or(fmt::format("stop{}", model.stops.size() + 1));
+    reader.rename(fmt::format("stop \"{}\"", name));
+    model.stops.push_back(read_joining<StopDescription>(reader));
+    StopDescription& stop = model.stops.back();
+    stop.name = name;
+    stop.where = reader.where("name");
+    stop.gap = reader.quantity("gap");
+    stop.stiffness = reader.quantity("stiffness");
+    stop.damping = reader.optional_quantity("damping").value_or(Quantity(0.0));
+    reader.finish();
+  }
   for (TomlReader& reader : root.tables("force")) {
     ForceDescription force;
     force.on = reader.name("on", &force.where);

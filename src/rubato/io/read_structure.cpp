@@ -78,6 +78,12 @@ BeamDescription read_beam(TomlReader& reader) {
   beam.elements = static_cast<int>(elements);
   beam.orientation = reader.optional_quantities("orientation").value_or(std::vector<Quantity>{});
   beam.orientation_where = reader.where("orientation");
+  if (auto release = reader.optional_table("release", fmt::format("{}: release", reader.what()))) {
+    beam.release_where = release->where();
+    beam.release[0] = release->optional_texts("first").value_or(std::vector<std::string>{});
+    beam.release[1] = release->optional_texts("second").value_or(std::vector<std::string>{});
+    release->finish();
+  }
   reader.finish();
   return beam;
 }

@@ -99,8 +99,12 @@ class NetcdfWriter final : public results::RowWriter {
     offset_ += width;
     int dimensions[2] = {rows, variable.has_labels ? labelled_dimension(block) : 0};
     const int rank = variable.has_labels ? 2 : 1;
-    file_->check(nc_def_var(group_, block.variable.c_str(), variable.has_words ? NC_INT : NC_DOUBLE, rank, dimensions,
-                            &variable.id));
+    // Sliders and stops both have a force: a name that is taken gets its dimension before it.
+    int known = 0;
+    const bool is_taken = nc_inq_varid(group_, block.variable.c_str(), &known) == NC_NOERR;
+    const std::string name = is_taken ? block.dimension + "_" + block.variable : block.variable;
+    file_->check(
+        nc_def_var(group_, name.c_str(), variable.has_words ? NC_INT : NC_DOUBLE, rank, dimensions, &variable.id));
     const std::size_t chunk[2] = {chunk_rows, width};
     file_->check(nc_def_var_chunking(group_, variable.id, NC_CHUNKED, chunk));
     // Rows are only ever appended, so two chunks suffice; netCDF would keep 16 MB a variable. Written chunks go first.

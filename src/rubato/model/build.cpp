@@ -1,3 +1,4 @@
+#include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
 #include <rubato/model/model.hpp>
 
@@ -29,6 +30,7 @@ class Builder {
     take_springs();
     take_damping();
     take_sliders();
+    take_stops();
     for (const ForceDescription& force : description_.forces)
       model_.forces.push_back(
           {find(force.on, force.where, "a force is on"), law(force.law, fmt::format("the force on \"{}\"", force.on))});
@@ -48,10 +50,7 @@ class Builder {
   }
 
   double at_least_zero(const Quantity& quantity, const std::string& what, const std::string& remedy = "") const {
-    const double value = number(quantity, what);
-    if (!(value >= 0.0))
-      throw InvalidInput(quantity.where, fmt::format("{} must not be negative, got {}{}", what, value, remedy));
-    return value;
+    return model::at_least_zero(quantity, parameters_, what, remedy);
   }
 
   double normal_load(const Quantity& quantity, const std::string& what) const {
@@ -120,37 +119,6 @@ class Builder {
     lines_ = std::move(built.lines);
   }
 
-  SparseMatrix to_sparse(const MatrixDescription& matrix, int size) const {
-    if (matrix.size != size)
-      throw InvalidInput(matrix.where, fmt::format("the matrix \"{}\" is {} x {}, but the mass matrix is {} x {}",
-                                                   matrix.file, matrix.size, matrix.size, size, size));
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(matrix.entries.size());
-    for (const auto& entry : matrix.entries) entries.emplace_back(entry.row, entry.column, entry.value);
-    SparseMatrix sparse(size, size);
-    sparse.setFromTriplets(entries.begin(), entries.end());
-    return SparseMatrix(0.5 * (sparse + SparseMatrix(sparse.transpose())));
-  }
-
-  // A diagonal entry that is missing or not positive makes the matrix singular or worse.
-  static void require_masses(const MatricesDescription& matrices) {
-    std::vector<std::pair<int, double>> diagonal;
-    for (const auto& entry : matrices.mass.entries)
-      if (entry.row == entry.column) diagonal.emplace_back(entry.row, entry.value);
-    std::sort(diagonal.begin(), diagonal.end());
-    std::size_t i = 0;
-    for (int row = 0; row < matrices.mass.size; ++row) {
-      double mass = 0.0;
-      for (; i < diagonal.size() && diagonal[i].first == row; ++i) mass += diagonal[i].second;
-      if (mass > 0.0) continue;
-      const auto place = static_cast<std::size_t>(row);
-      const std::string name = place < matrices.names.size() ? matrices.names[place] : std::to_string(row + 1);
-      throw InvalidInput(matrices.mass.where,
-                         fmt::format("the mass matrix \"{}\" gives coordinate \"{}\" the mass {}; it must be positive",
-                                     matrices.mass.file, name, mass));
-    }
-  }
-
   void take_matrices(const MatricesDescription& matrices) {
     const auto refuse = [&](const Location& where, const std::string& key) {
       throw InvalidInput(where,
@@ -181,11 +149,7 @@ class Builder {
     }
     if (!matrices.names.empty())
       for (int i = 0; i < size; ++i) places_.emplace(std::to_string(i + 1), i);  // numbers serve beside names
-    FullMatrices full;
-    full.mass = to_sparse(matrices.mass, size);
-    full.stiffness = to_sparse(matrices.stiffness, size);
-    full.damping = matrices.damping ? to_sparse(*matrices.damping, size) : SparseMatrix(size, size);
-    model_.matrices = std::move(full);
+    model_.matrices = build_matrices(matrices);
     model_.position = Vector::Zero(size);
     model_.velocity = Vector::Zero(size);
     take_by_name(matrices.position, "position", model_.position);
@@ -279,34 +243,11 @@ class Builder {
   }
 
   void take_damping() {
-    const auto* modal = std::get_if<ModalDamping>(&description_.damping);
-    const auto* rayleigh = std::get_if<RayleighDamping>(&description_.damping);
-    if ((modal || rayleigh) && description_.matrices && description_.matrices->damping)
-      throw InvalidInput(modal ? modal->where : rayleigh->where,
+    if (!std::holds_alternative<std::monostate>(description_.damping) && description_.matrices &&
+        description_.matrices->damping)
+      throw InvalidInput(where_of(description_.damping),
                          "[damping] and the damping matrix of [matrices] would count damping twice; keep one");
-    if (modal) {
-      ModalDampingRatios ratios;
-      const auto n = model_.size();
-      for (const Quantity& ratio : modal->ratios) ratios.ratios.push_back(at_least_zero(ratio, "modal_ratio"));
-      if (modal->modes) {
-        const double modes = number(*modal->modes, "modes");
-        if (!(modes >= 1.0 && modes <= static_cast<double>(n)) || modes != std::floor(modes))
-          throw InvalidInput(modal->modes->where,
-                             fmt::format("modes must be a whole number from 1 to {}, got {}", n, modes));
-        ratios.modes = static_cast<Index>(modes);
-      }
-      const Index damped = ratios.modes < 0 ? n : ratios.modes;
-      const auto given = static_cast<Index>(ratios.ratios.size());
-      if (given != 1 && given != damped)
-        throw InvalidInput(modal->where,
-                           fmt::format("modal_ratio lists {} ratios for {} modes; give one for all, or one a "
-                                       "mode",
-                                       given, damped));
-      model_.damping = ratios;
-    } else if (rayleigh) {
-      model_.damping = RayleighCoefficients{at_least_zero(rayleigh->mass, "rayleigh: mass"),
-                                            at_least_zero(rayleigh->stiffness, "rayleigh: stiffness")};
-    }
+    model_.damping = build_damping(description_.damping, model_.size(), parameters_);
   }
 
   void take_sliders() {
@@ -330,6 +271,31 @@ class Builder {
       slider.limit = at_least_zero(description.friction_coefficient, part + ": friction_coefficient") *
                      normal_load(description.normal_load, part + ": normal_load");
       model_.sliders.push_back(slider);
+    }
+  }
+
+  void take_stops() {
+    for (const StopDescription& description : description_.stops) {
+      const std::string part = fmt::format("stop \"{}\"", description.name);
+      if (description.name.empty()) throw InvalidInput(description.where, "a stop needs a name");
+      refuse_unfit_name(description.name, description.where);
+      const auto is_called_so = [&](const auto& other) { return other.name == description.name; };
+      if (std::any_of(model_.stops.begin(), model_.stops.end(), is_called_so))
+        throw InvalidInput(description.where, fmt::format("two stops are called \"{}\"", description.name));
+      if (std::any_of(model_.sliders.begin(), model_.sliders.end(), is_called_so) ||
+          places_.count(description.name) > 0)
+        throw InvalidInput(description.where,
+                           fmt::format("{} has the name of a slider or a coordinate; results would mix them up", part));
+      Stop stop;
+      stop.name = description.name;
+      join(description.between, description.between_where, part, stop.first, stop.second);
+      stop.gap = number(description.gap, part + ": gap");
+      stop.stiffness = number(description.stiffness, part + ": stiffness");
+      if (!(stop.stiffness > 0.0))
+        throw InvalidInput(description.stiffness.where,
+                           fmt::format("{}: stiffness must be positive, got {}", part, stop.stiffness));
+      stop.damping = at_least_zero(description.damping, part + ": damping");
+      model_.stops.push_back(stop);
     }
   }
 
@@ -379,33 +345,7 @@ class Builder {
   }
 
   TimeLaw law(const TimeLawDescription& description, const std::string& part) const {
-    if (const auto* harmonic = std::get_if<HarmonicDescription>(&description)) {
-      const std::string key = harmonic->frequency_in_hertz ? "frequency" : "angular_frequency";
-      const double factor = harmonic->frequency_in_hertz ? 2.0 * std::numbers::pi : 1.0;
-      return HarmonicLaw{number(harmonic->amplitude, part + ": amplitude"),
-                         factor * at_least_zero(harmonic->angular_frequency, part + ": " + key),
-                         number(harmonic->phase, part + ": phase")};
-    }
-    if (const auto* formula = std::get_if<TimeFormulaDescription>(&description)) {
-      try {
-        FormulaLaw formula_law{numerics::Expression(formula->formula.expression, parameters_, true)};
-        const double start = formula_law.formula(0.0);
-        if (!std::isfinite(start))
-          throw InvalidInput(fmt::format("\"{}\" is {} at t = 0; give a formula that is finite at all times",
-                                         formula->formula.expression, std::isnan(start) ? std::abs(start) : start));
-        return formula_law;
-      } catch (const InvalidInput& fault) {
-        throw InvalidInput(formula->formula.where, part + ": " + fault.message());
-      }
-    }
-    const auto& table = std::get<TableDescription>(description);
-    TableLaw values;
-    values.times = table.times;
-    values.values = table.values;
-    values.source = table.file;
-    if (table.beyond == TableDescription::Beyond::zero) values.beyond = TableLaw::Beyond::zero;
-    if (table.beyond == TableDescription::Beyond::hold) values.beyond = TableLaw::Beyond::hold;
-    return values;
+    return build_time_law(description, parameters_, part);
   }
 
   void take_base_motion(const BaseMotionDescription& description) {

@@ -1,4 +1,6 @@
+#include <rubato/model/build_sections.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/by_name.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,42 +19,6 @@ using numerics::Parameters;
 // round-off.
 constexpr double parallel = 1e-8;
 
-struct Material {
-  double young, shear_modulus, density;  // shear_modulus 0: not given
-};
-
-struct Section {
-  double area, inertia_y, inertia_z, torsion, shear_factor_y, shear_factor_z;  // 0: not given
-};
-
-/// Values by name, with messages about names that are missing or doubled.
-template <class Value>
-class ByName {
- public:
-  explicit ByName(std::string kind) : kind_(std::move(kind)) {}
-
-  void add(const std::string& name, const Location& where, Value value) {
-    if (name.empty()) throw InvalidInput(where, fmt::format("a {} needs a name", kind_));
-    if (!places_.emplace(name, values_.size()).second)
-      throw InvalidInput(where, fmt::format("two {}s are called \"{}\"", kind_, name));
-    names_.push_back(name);
-    values_.push_back(std::move(value));
-  }
-  std::size_t place(const std::string& name, const Location& where, const std::string& role) const {
-    const auto found = places_.find(name);
-    if (found != places_.end()) return found->second;
-    throw InvalidInput(where, fmt::format("{} \"{}\", which is no {}{}", role, name, kind_, suggestion(name, names_)));
-  }
-  bool has(const std::string& name) const { return places_.count(name) > 0; }
-  const Value& at(std::size_t place) const { return values_[place]; }
-
- private:
-  std::string kind_;
-  std::vector<std::string> names_;
-  std::vector<Value> values_;
-  std::unordered_map<std::string, std::size_t> places_;
-};
-
 class StructureBuilder {
  public:
   StructureBuilder(const StructureDescription& description, const Parameters& parameters)
@@ -60,8 +26,8 @@ class StructureBuilder {
 
   BuiltStructure build(Index offset) {
     take_nodes();
-    take_materials();
-    take_sections();
+    materials_ = build_materials(description_.materials, parameters_);
+    sections_ = build_sections(description_.sections, in_plane(), parameters_);
     for (const BeamDescription& beam : description_.beams) take_beam(beam);
     for (const TrussDescription& truss : description_.trusses) take_truss(truss);
     for (const PointMassDescription& mass : description_.masses) take_mass(mass);
@@ -81,9 +47,7 @@ class StructureBuilder {
     return evaluate(quantity, parameters_, what);
   }
   double positive(const Quantity& quantity, const std::string& what) const {
-    const double value = number(quantity, what);
-    if (!(value > 0.0)) throw InvalidInput(quantity.where, fmt::format("{} must be positive, got {}", what, value));
-    return value;
+    return model::positive(quantity, parameters_, what);
   }
   bool in_plane() const { return built_.structure.dimension == 2; }
 
@@ -114,66 +78,6 @@ class StructureBuilder {
         position[static_cast<Index>(i)] = number(node.position[i], fmt::format("node \"{}\": position", node.name));
       add_node(node.name, node.where, position);
     }
-  }
-
-  void take_materials() {
-    for (const MaterialDescription& material : description_.materials) {
-      const std::string part = fmt::format("material \"{}\": ", material.name);
-      Material values{positive(material.young, part + "young"), 0.0, positive(material.density, part + "density")};
-      if (material.poisson && material.shear_modulus)
-        throw InvalidInput(material.shear_modulus->where,
-                           part + "\"poisson\" and \"shear_modulus\" say the same; keep one");
-      if (material.shear_modulus) values.shear_modulus = positive(*material.shear_modulus, part + "shear_modulus");
-      if (material.poisson) {
-        const double nu = number(*material.poisson, part + "poisson");
-        if (!(nu > -1.0 && nu <= 0.5))
-          throw InvalidInput(material.poisson->where, fmt::format("{}poisson must lie in (-1, 0.5], got {}", part, nu));
-        values.shear_modulus = values.young / (2.0 * (1.0 + nu));
-      }
-      materials_.add(material.name, material.where, values);
-    }
-  }
-
-  void take_sections() {
-    for (const SectionDescription& section : description_.sections) {
-      const std::string part = fmt::format("section \"{}\": ", section.name);
-      Section values{};
-      values.area = positive(section.area, part + "area");
-      const std::size_t wanted = in_plane() ? 1 : 2;
-      if (!section.inertia.empty() && section.inertia.size() != wanted)
-        throw InvalidInput(section.where,
-                           fmt::format("{}inertia takes {}, got {}", part,
-                                       in_plane() ? "one number in the plane" : "two numbers in space, [Iy, Iz]",
-                                       section.inertia.size()));
-      if (!section.inertia.empty()) {
-        values.inertia_z = positive(section.inertia.back(), part + "inertia");
-        values.inertia_y = positive(section.inertia.front(), part + "inertia");
-      }
-      if (section.torsion) {
-        if (in_plane())
-          throw InvalidInput(section.torsion->where, part + "torsion is for models in space; remove the key");
-        values.torsion = positive(*section.torsion, part + "torsion");
-      }
-      if (section.shear_factor.size() > wanted)
-        throw InvalidInput(section.where, fmt::format("{}shear_factor takes {}, got {}", part,
-                                                      in_plane() ? "one number in the plane"
-                                                                 : "one number, or two in space, [along y, along z]",
-                                                      section.shear_factor.size()));
-      if (!section.shear_factor.empty()) {
-        values.shear_factor_y = shear_factor(section.shear_factor.front(), part);
-        values.shear_factor_z = shear_factor(section.shear_factor.back(), part);
-      }
-      sections_.add(section.name, section.where, values);
-    }
-  }
-
-  double shear_factor(const Quantity& quantity, const std::string& part) const {
-    const double value = positive(quantity, part + "shear_factor");
-    if (!(value <= 1.0))
-      throw InvalidInput(quantity.where, fmt::format("{}shear_factor is the shear area over the area and cannot exceed "
-                                                     "1, got {}",
-                                                     part, value));
-    return value;
   }
 
   static std::string part_of(const LineDescription& line, const char* kind) {
@@ -262,8 +166,41 @@ class StructureBuilder {
       p.shear_area_y = section.shear_factor_y * section.area;
       p.shear_area_z = in_plane() ? 0.0 : section.shear_factor_z * section.area;
     }
-    const LineElement element{ends[0], ends[1], add_properties(p), orientation_of(beam, part, ends, p)};
-    divide(beam, part, element);
+    const LineElement element{ends[0], ends[1], 0, orientation_of(beam, part, ends, p)};
+    const std::array<std::uint16_t, 2> released{released_at(beam, part, 0), released_at(beam, part, 1)};
+    divide(beam, part, element, p, released);
+  }
+
+  /// What an end of a beam does not share with its node, as bits over the degrees of freedom of one end.
+  std::uint16_t released_at(const BeamDescription& beam, const std::string& part, std::size_t end) const {
+    static constexpr std::array<std::size_t, 3> of_plane{0, 1, 5};
+    std::uint16_t released = 0;
+    for (const std::string& axis : beam.release[end]) {
+      std::size_t place = 0;
+      const std::size_t count = in_plane() ? 3 : 6;
+      while (place < count && axis != axis_names[in_plane() ? of_plane[place] : place]) ++place;
+      if (place == count)
+        throw InvalidInput(beam.release_where,
+                           fmt::format("{} releases \"{}\"; an end of a beam has {}", part, axis,
+                                       in_plane() ? "x, y, rz in the plane" : "x, y, z, rx, ry, rz in space"));
+      released = static_cast<std::uint16_t>(released | (1u << place));
+    }
+    return released;
+  }
+
+  /// Properties with released ends, which must leave the element stiff by itself.
+  int add_released(LineProperties p, std::uint16_t released, double length, const std::string& part,
+                   const Location& where) {
+    p.released = released;
+    if (released != 0) {
+      LineMatrix stiffness, mass;
+      local_matrices(p, built_.structure.dimension, length, stiffness, mass);
+      if (!release(released, stiffness, mass))
+        throw InvalidInput(where, fmt::format("{} releases so much that it moves by itself without resistance: a "
+                                              "mechanism; keep one of the ends of each motion",
+                                              part));
+    }
+    return add_properties(p);
   }
 
   Axis orientation_of(const BeamDescription& beam, const std::string& part, const std::array<Index, 2>& ends,
@@ -299,13 +236,22 @@ class StructureBuilder {
   }
 
   /// Adds the elements of a beam and the nodes between them, which are called BEAM:1, BEAM:2, ...
-  void divide(const BeamDescription& beam, const std::string& part, LineElement element) {
+  /// @param p         of an element without releases
+  /// @param released  at the ends of the beam
+  void divide(const BeamDescription& beam, const std::string& part, LineElement element, const LineProperties& p,
+              const std::array<std::uint16_t, 2>& released) {
     if (beam.elements < 1)
       throw InvalidInput(beam.where, fmt::format("{}: elements must be at least 1, got {}", part, beam.elements));
     const Index last = element.second;
     const Axis from = built_.structure.positions[static_cast<std::size_t>(element.first)];
     const Axis to = built_.structure.positions[static_cast<std::size_t>(last)];
     const std::string name = beam.name.empty() ? beam.nodes[0] + "-" + beam.nodes[1] : beam.name;
+    const double length = (to - from).norm() / beam.elements;
+    const int width = 3 * (built_.structure.dimension - 1);
+    const auto properties_at = [&](bool is_first, bool is_last) {
+      const auto both = static_cast<std::uint16_t>((is_first ? released[0] : 0) | (is_last ? released[1] << width : 0));
+      return both == 0 ? add_properties(p) : add_released(p, both, length, part, beam.release_where);
+    };
     for (int i = 1; i < beam.elements; ++i) {
       const double share = static_cast<double>(i) / beam.elements;
       const std::string between = fmt::format("{}:{}", name, i);
@@ -315,15 +261,19 @@ class StructureBuilder {
                                                    part, between));
       add_node(between, beam.where, (1.0 - share) * from + share * to);
       element.second = static_cast<Index>(states_.size()) - 1;
+      element.properties = properties_at(i == 1, false);
       add_element(element, true);
       element.first = element.second;
     }
     element.second = last;
+    element.properties = properties_at(beam.elements == 1, true);
     add_element(element, true);
   }
 
   void add_element(const LineElement& element, bool is_beam) {
     built_.structure.elements.push_back(element);
+    if (built_.structure.properties[static_cast<std::size_t>(element.properties)].released != 0)
+      return take_inertias_of(element);
     for (const Index node : {element.first, element.second}) {
       auto& exists = states_[static_cast<std::size_t>(node)].exists;
       exists[0] = exists[1] = true;
@@ -331,6 +281,30 @@ class StructureBuilder {
       if (!is_beam) continue;
       exists[5] = true;
       exists[3] = exists[4] = !in_plane();
+    }
+  }
+
+  /// A degree of freedom that all elements of a node release has no inertia, and does not exist.
+  void take_inertias_of(const LineElement& element) {
+    Structure alone;
+    alone.dimension = built_.structure.dimension;
+    for (const Index node : {element.first, element.second})
+      alone.positions.push_back(built_.structure.positions[static_cast<std::size_t>(node)]);
+    alone.places.resize(2);
+    alone.properties = {built_.structure.properties[static_cast<std::size_t>(element.properties)]};
+    ElementEquations equations;
+    equations_of(alone, {0, 1, 0, element.orientation}, equations);
+    constexpr double none = 1e-12;  // of the largest of its kind: round-off of turning the axes
+    std::array<double, 2> largest{};
+    for (int i = 0; i < equations.size; ++i) {
+      double& kind = largest[is_rotation(equations.axis[static_cast<std::size_t>(i)])];
+      kind = std::max(kind, equations.mass(i, i));
+    }
+    for (int i = 0; i < equations.size; ++i) {
+      const std::size_t axis = equations.axis[static_cast<std::size_t>(i)];
+      const Index node = i < equations.size / 2 ? element.first : element.second;
+      if (equations.mass(i, i) > none * largest[is_rotation(axis)])
+        states_[static_cast<std::size_t>(node)].exists[axis] = true;
     }
   }
 

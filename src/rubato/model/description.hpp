@@ -73,6 +73,17 @@ struct SliderDescription {
   Location where;
 };
 
+/// One-sided stop: pushes its ends apart where u = x_first - x_second exceeds the gap.
+struct StopDescription {
+  std::string name;
+  Between between;
+  std::array<Location, 2> between_where;
+  Quantity gap;        ///< [m]; negative: compressed at u = 0
+  Quantity stiffness;  ///< [N/m]
+  Quantity damping;    ///< [N s/m]
+  Location where;
+};
+
 /// amplitude * cos(angular_frequency * t + phase)
 struct HarmonicDescription {
   Quantity amplitude;          ///< of either sign
@@ -166,6 +177,7 @@ struct ModelDescription {
   std::vector<DamperDescription> dampers;
   DampingDescription damping;
   std::vector<SliderDescription> sliders;
+  std::vector<StopDescription> stops;
   std::vector<ForceDescription> forces;
   std::vector<DistributedForceDescription> distributed_forces;
   std::vector<HeldDescription> held_forces, displacements;
@@ -209,7 +221,7 @@ struct StepDescription {
   std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
   std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
   std::optional<Quantity> first, smallest, largest;  ///< [s]
-  bool locate_events = false;                        ///< end steps where sliders change their state
+  bool locate_events = false;                        ///< end steps where sliders and stops change their state
   std::optional<Quantity> reference;                 ///< l of inertia_jump [m sqrt(kg)]
   bool reference_is_initial = false;                 ///< l = |q0|_M even where the model has a value of its own
   bool as_printed = false;                           ///< inertia_jump with the misprint of its source

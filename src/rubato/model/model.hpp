@@ -28,6 +28,21 @@ struct Slider {
   double limit = 0.0;      ///< mu N [N], >= 0
 };
 
+/// One-sided stop on u = x_first - x_second; -force acts on first, +force on second.
+struct Stop {
+  std::string name;
+  Index first = ground, second = ground;
+  double gap = 0.0;        ///< [m]
+  double stiffness = 0.0;  ///< k [N/m], > 0
+  double damping = 0.0;    ///< c [N s/m], >= 0
+
+  /// fs = max(0, k (u - gap) + c du/dt) while u > gap, else 0: it never pulls. With c > 0 it jumps when it closes.
+  double force(double u, double rate) const {
+    const double pushed = stiffness * (u - gap) + damping * rate;
+    return u > gap && pushed > 0.0 ? pushed : 0.0;
+  }
+};
+
 struct Force {
   Index coordinate = 0;
   TimeLaw law;  ///< [N]
@@ -79,6 +94,7 @@ struct Model {
   std::optional<FullMatrices> matrices;  ///< instead of mass, springs and dashpots
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;
+  std::vector<Stop> stops;
   std::vector<Force> forces;
   std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;

@@ -27,6 +27,7 @@ void equations_with(const LineProperties& properties, const Structure& structure
   const Axis along = structure.positions[static_cast<std::size_t>(element.second)] -
                      structure.positions[static_cast<std::size_t>(element.first)];
   local_matrices(properties, structure.dimension, along.norm(), equations.stiffness, equations.mass);
+  if (properties.released != 0) (void)release(properties.released, equations.stiffness, equations.mass);
   // A truss is the same about its axis, and so is its mass: any orientation across it will do.
   const Axis across = in_plane  ? Axis(-along.y(), along.x(), 0.0)
                       : is_beam ? element.orientation

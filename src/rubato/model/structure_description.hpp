@@ -49,6 +49,10 @@ struct BeamDescription : LineDescription {
   enum class Formulation { timoshenko, euler_bernoulli };
   Formulation formulation = Formulation::timoshenko;
   int elements = 1;
+  /// Degrees of freedom in the beam's own axes ("x", ..., "rz") that its first and its second end do not share with
+  /// the node.
+  std::array<std::vector<std::string>, 2> release;
+  Location release_where;
   std::vector<Quantity> orientation;  ///< in space: a vector in the local x-y plane, not along the beam; may be empty
   Location orientation_where;
 };

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -184,11 +185,15 @@ LocallyNonlinear assemble(const model::Model& model) {
     parts.mass = from_triplets(n, mass);
     parts.stiffness = from_elements(n, model.springs, std::move(stiffness));
   }
-  require_positive_definite(parts.mass, model.coordinates, !model.matrices);
+  const auto& properties = model.structure.properties;
+  const bool has_releases =
+      std::any_of(properties.begin(), properties.end(), [](const auto& p) { return p.released != 0; });
+  require_positive_definite(parts.mass, model.coordinates, !model.matrices && !has_releases);
   parts.damping = damping_matrix(model.damping, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
   parts.sliders = model.sliders;
+  parts.stops = model.stops;
   parts.loads = loads_of(model, parts.mass);
   parts.start.q = model.position;
   parts.start.v = model.velocity;

@@ -22,7 +22,11 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
   State& start = parts_.start;
   if (start.q.size() == 0) start.q = Vector::Zero(n);
   if (start.v.size() == 0) start.v = Vector::Zero(n);
-  if (start.slider_force.size() == 0) start.slider_force = Vector::Zero(slider_count());
+  for (const auto& slider : parts_.sliders) contacts_.push_back({slider.first, slider.second});
+  for (const auto& stop : parts_.stops) contacts_.push_back({stop.first, stop.second});
+  if (start.slider_force.size() == 0) start.slider_force = Vector::Zero(contact_count());
+  assert(start.slider_force.size() == contact_count());
+  set_stop_forces(start);
   if (start.auxiliary_acceleration.size() == 0) start.auxiliary_acceleration = Vector::Zero(n);
   parts_.mass.makeCompressed();
   parts_.damping.makeCompressed();
@@ -31,25 +35,51 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
 }
 
 void LocallyNonlinear::add_slider_forces(const Vector& slider_force, double factor, Vector& out) const {
-  for (Index i = 0; i < slider_count(); ++i) {
-    const auto& slider = parts_.sliders[static_cast<std::size_t>(i)];
-    if (slider.first != ground) out[slider.first] += factor * slider_force[i];
-    if (slider.second != ground) out[slider.second] -= factor * slider_force[i];
+  for (Index i = 0; i < contact_count(); ++i) {
+    const Ends& ends = contacts_[static_cast<std::size_t>(i)];
+    if (ends.first != ground) out[ends.first] += factor * slider_force[i];
+    if (ends.second != ground) out[ends.second] -= factor * slider_force[i];
   }
 }
 
-SparseMatrix LocallyNonlinear::stuck_stiffness() const {
+void LocallyNonlinear::set_stop_forces(State& state) const {
+  for (Index j = 0; j < stop_count(); ++j) state.slider_force[slider_count() + j] = stop_force(j, state.q, state.v);
+}
+
+SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
+                                             const std::vector<double>& coefficients) const {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& slider : parts_.sliders) {
-    if (slider.first != ground) entries.emplace_back(slider.first, slider.first, slider.stiffness);
-    if (slider.second != ground) entries.emplace_back(slider.second, slider.second, slider.stiffness);
-    if (slider.first == ground || slider.second == ground) continue;
-    entries.emplace_back(slider.first, slider.second, -slider.stiffness);
-    entries.emplace_back(slider.second, slider.first, -slider.stiffness);
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const auto [first, second] = contacts_[i];
+    const double coefficient = coefficients[i];
+    if (first != ground) entries.emplace_back(first, first, coefficient);
+    if (second != ground) entries.emplace_back(second, second, coefficient);
+    if (first == ground || second == ground) continue;
+    entries.emplace_back(first, second, -coefficient);
+    entries.emplace_back(second, first, -coefficient);
   }
-  SparseMatrix stuck(size(), size());
-  stuck.setFromTriplets(entries.begin(), entries.end());
-  return SparseMatrix(parts_.stiffness + stuck);
+  SparseMatrix added(size(), size());
+  added.setFromTriplets(entries.begin(), entries.end());
+  return SparseMatrix(matrix + added);
+}
+
+SparseMatrix LocallyNonlinear::stuck_stiffness() const {
+  std::vector<double> coefficients;
+  for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
+  return with_contacts(parts_.stiffness, coefficients);
+}
+
+SparseMatrix LocallyNonlinear::closed_stiffness() const {
+  std::vector<double> coefficients;
+  for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
+  for (const auto& stop : parts_.stops) coefficients.push_back(stop.stiffness);
+  return with_contacts(parts_.stiffness, coefficients);
+}
+
+SparseMatrix LocallyNonlinear::closed_damping() const {
+  std::vector<double> coefficients(parts_.sliders.size(), 0.0);
+  for (const auto& stop : parts_.stops) coefficients.push_back(stop.damping);
+  return with_contacts(parts_.damping, coefficients);
 }
 
 struct EquilibriumAcceleration::Workspace {

@@ -11,19 +11,23 @@
 
 namespace rubato::system {
 
-/// A linear structure with sliders:
+/// A linear structure with sliders and one-sided stops:
 ///
-///   M a + C v + K q + B fc = f(t),   u = B^T q,   fc = clamp(fc_old + kT (u - u_old), -limit, limit)
+///   M a + C v + K q + B fc = f(t),   u = B^T q
+///   sliders  fc = clamp(fc_old + kT (u - u_old), -limit, limit)
+///   stops    fc = max(0, k (u - gap) + c du/dt) while u > gap, else 0
 ///
 /// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m] e_first - e_second of
-/// each slider. Immutable; integrators keep what moves in a State and in their workspace.
+/// each contact: the sliders, then the stops. Immutable; integrators keep what moves in a State and in their
+/// workspace.
 class LocallyNonlinear {
  public:
   struct Parts {
     SparseMatrix mass, damping, stiffness;  ///< [n x n]
     std::vector<model::Slider> sliders;
+    std::vector<model::Stop> stops;
     Loads loads;
-    State start;                           ///< t = 0; q, v of the model; sliders without force
+    State start;  ///< t = 0; q, v of the model; sliders without force; stops as q and v have them
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
     std::vector<char> is_rotation;         ///< [n]: in [rad] instead of [m]; may be empty: none is
     /// Characteristic size of the model for error measures (model::reference_value) [m sqrt(kg)]; 0: it has none.
@@ -35,10 +39,18 @@ class LocallyNonlinear {
 
   Index size() const { return parts_.mass.rows(); }
   Index slider_count() const { return static_cast<Index>(parts_.sliders.size()); }
+  Index stop_count() const { return static_cast<Index>(parts_.stops.size()); }
+  Index contact_count() const { return static_cast<Index>(contacts_.size()); }
   const SparseMatrix& mass() const { return parts_.mass; }
   const SparseMatrix& damping() const { return parts_.damping; }
   const SparseMatrix& stiffness() const { return parts_.stiffness; }
   const std::vector<model::Slider>& sliders() const { return parts_.sliders; }
+  const std::vector<model::Stop>& stops() const { return parts_.stops; }
+  /// What a contact joins: that of a slider, or of a stop.
+  struct Ends {
+    Index first = ground, second = ground;
+  };
+  const std::vector<Ends>& contacts() const { return contacts_; }
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
@@ -50,19 +62,32 @@ class LocallyNonlinear {
   double reference() const { return parts_.reference; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
-  /// u = x_first - x_second of slider i [m]
+  /// u = x_first - x_second of contact i [m]; of velocities, its rate
   double relative_displacement(Index i, const Vector& q) const {
-    const auto& s = parts_.sliders[static_cast<std::size_t>(i)];
+    const Ends& s = contacts_[static_cast<std::size_t>(i)];
     return (s.first == ground ? 0.0 : q[s.first]) - (s.second == ground ? 0.0 : q[s.second]);
   }
-  /// out += factor * B fc
+  /// fs of stop j at given displacements and velocities [N]
+  double stop_force(Index j, const Vector& q, const Vector& v) const {
+    const Index i = slider_count() + j;
+    return parts_.stops[static_cast<std::size_t>(j)].force(relative_displacement(i, q), relative_displacement(i, v));
+  }
+  /// Sets the forces of all stops to what displacements and velocities of the state make them.
+  void set_stop_forces(State& state) const;
+  /// out += factor * B fc, of all contacts
   void add_slider_forces(const Vector& slider_force, double factor, Vector& out) const;
 
-  /// K plus kT of the given sliders (all of them by default): the stiffness with those sliders stuck.
+  /// K plus kT of all sliders: the stiffness with the sliders stuck and the stops open.
   SparseMatrix stuck_stiffness() const;
+  /// C and that K with all stops closed besides: what bounds the step of explicit methods.
+  SparseMatrix closed_damping() const;
+  SparseMatrix closed_stiffness() const;
 
  private:
+  SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
+
   Parts parts_;
+  std::vector<Ends> contacts_;
   bool has_diagonal_mass_ = false;
 };
 

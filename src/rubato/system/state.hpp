@@ -9,10 +9,11 @@ namespace rubato::system {
 /// Where a system is: all that its equations need, and the auxiliary acceleration that one-step methods carry.
 /// A value: copying, comparing and restoring it is exact, and there is nothing else to restore.
 struct State {
-  double t = 0.0;       ///< [s]
-  Vector q;             ///< configuration [n] [m]; of a mechanism all numbers of its nodes
-  Vector v;             ///< velocity [n] [m/s]
-  Vector slider_force;  ///< fc of each slider [m] [N]: its history
+  double t = 0.0;  ///< [s]
+  Vector q;        ///< configuration [n] [m]; of a mechanism all numbers of its nodes
+  Vector v;        ///< velocity [n] [m/s]
+  /// fc of each slider [N], its history; then fs of each stop [N], which follows from q and v but for its jumps
+  Vector slider_force;
   /// The acceleration that a method of the alpha family weights (that of equilibrium at a shifted time), [n] [m/s2].
   /// What is reported is system::LocallyNonlinear::acceleration instead. Methods that need none leave it as it is.
   Vector auxiliary_acceleration;

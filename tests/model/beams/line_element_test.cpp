@@ -196,5 +196,62 @@ TEST(Truss, HasStiffnessAlongItsAxisAndMassInAllDirections) {
             1e-13 * mass);
 }
 
+LineProperties plane_beam() {
+  LineProperties p;
+  p.young = 2.0e11;
+  p.density = 7800.0;
+  p.area = 1e-3;
+  p.inertia_z = 1e-7;
+  return p;
+}
+
+// A beam pinned at its first end: 3 EI/L^3 over (y1, y2, rz2), and the mass of its static shapes 1 - 3s/2 + s^3/2,
+// 3s/2 - s^3/2 and L (s^3 - s)/2, whose products integrate to 33/140, 39/280, ... (s from 0 to 1).
+TEST(Release, OfARotationMakesThePinnedElement) {
+  const LineProperties p = plane_beam();
+  const double length = 1.7, bending = p.young * p.inertia_z / std::pow(length, 3), l = length;
+  LineMatrix stiffness, mass;
+  local_matrices(p, 2, length, stiffness, mass);
+  ASSERT_TRUE(release(1u << 2, stiffness, mass));
+  Eigen::Matrix3d expected;
+  expected << 3.0, -3.0, 3.0 * l, -3.0, 3.0, -3.0 * l, 3.0 * l, -3.0 * l, 3.0 * l * l;
+  Eigen::Matrix3d inertia;
+  inertia << 198.0, 117.0, -33.0 * l, 117.0, 408.0, -72.0 * l, -33.0 * l, -72.0 * l, 16.0 * l * l;
+  inertia *= p.density * p.area * length / 840.0;
+  const int rows[] = {1, 4, 5};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_NEAR(stiffness(rows[i], rows[j]), bending * expected(i, j), 1e-12 * bending * expected.norm());
+      EXPECT_NEAR(mass(rows[i], rows[j]), inertia(i, j), 1e-12 * inertia.norm());
+    }
+  EXPECT_EQ(stiffness.row(2).norm() + stiffness.col(2).norm() + mass.row(2).norm() + mass.col(2).norm(), 0.0);
+}
+
+TEST(Release, OfBothRotationsLeavesATruss) {
+  LineProperties p = plane_beam(), q = p;
+  q.kind = LineProperties::Kind::truss;
+  LineMatrix stiffness, mass, truss_stiffness, truss_mass;
+  local_matrices(p, 2, 1.7, stiffness, mass);
+  local_matrices(q, 2, 1.7, truss_stiffness, truss_mass);
+  ASSERT_TRUE(release(1u << 2 | 1u << 5, stiffness, mass));
+  const int rows[] = {0, 1, 3, 4};
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      EXPECT_NEAR(stiffness(rows[i], rows[j]), truss_stiffness(i, j), 1e-12 * truss_stiffness.norm());
+      EXPECT_NEAR(mass(rows[i], rows[j]), truss_mass(i, j), 1e-12 * truss_mass.norm());
+    }
+}
+
+TEST(Release, RefusesWhatNothingResists) {
+  for (const std::uint16_t released :
+       {1u << 0 | 1u << 3, 1u << 1 | 1u << 4, 1u << 1 | 1u << 2 | 1u << 5, 1u << 2 | 1u << 4 | 1u << 5}) {
+    LineMatrix stiffness, mass;
+    local_matrices(plane_beam(), 2, 1.7, stiffness, mass);
+    const LineMatrix before = stiffness;
+    EXPECT_FALSE(release(released, stiffness, mass)) << released;
+    EXPECT_EQ(stiffness, before);
+  }
+}
+
 }  // namespace
 }  // namespace rubato::model

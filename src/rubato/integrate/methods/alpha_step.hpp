@@ -16,7 +16,7 @@ namespace rubato::integrate {
 ///   S = (1 - alpha_m) M + (1 - alpha_f) (gamma h C + beta h^2 K)
 ///   qc = (1 - alpha_f) qs + alpha_f q0,   vc = (1 - alpha_f) vs + alpha_f v0
 ///
-/// where l is the load weighted between the ends (linear forces of weighted states are weighted forces). The sliders
+/// where l is the load weighted between the ends (linear forces of weighted states are weighted forces). The contacts
 /// see their own displacement only through the contact compliance W = beta h^2 (1 - alpha_f) B^T S^-1 B.
 class AlphaStep {
  public:

@@ -8,7 +8,7 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr int sliders_in_place = 2;  // so many are solved for without a vector of their own
+constexpr int contacts_in_place = 2;  // so many are solved for without a vector of their own
 
 /// Everything that is linear is multiplied by S^-1 once per step size, so that a step is three small products.
 template <int N>
@@ -19,14 +19,19 @@ class DenseAlphaStep final : public AlphaStep {
 
  public:
   DenseAlphaStep(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
-      : p_(parameters), system_(system), n_(system.size()), m_(system.slider_count()) {
+      : p_(parameters),
+        system_(system),
+        n_(system.size()),
+        m_(system.contact_count()),
+        sliders_(system.slider_count()) {
     terms_ = static_cast<Index>(system.loads().terms().size());
-    for (const auto& slider : system.sliders()) {
-      first_.push_back(slider.first);
-      second_.push_back(slider.second);
-      stiffness_.push_back(slider.stiffness);
+    for (const auto& ends : system.contacts()) {
+      first_.push_back(ends.first);
+      second_.push_back(ends.second);
     }
+    for (const auto& slider : system.sliders()) stiffness_.push_back(slider.stiffness);
     trial_.resize(m_);
+    penetration_.resize(m_);
     a1_.resize(n_);
     qs_.resize(n_);
     vs_.resize(n_);
@@ -55,10 +60,11 @@ class DenseAlphaStep final : public AlphaStep {
     }
     // Eigen touches the first entry of what it solves for, and a model without loads or sliders has none.
     on_load_.resize(n_, terms_);
-    on_slider_.resize(n_, m_);
+    on_contact_.resize(n_, m_);
     if (terms_ > 0) on_load_ = factor.solve(pattern);
-    if (m_ > 0) on_slider_ = factor.solve(joins);
-    contact_.reset(p_.beta * h * h * end * joins.transpose() * Matrix(on_slider_), system_.sliders());
+    if (m_ > 0) on_contact_ = factor.solve(joins);
+    const Matrix per_force = end * joins.transpose() * Matrix(on_contact_);
+    contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
     return true;
   }
 
@@ -80,24 +86,34 @@ class DenseAlphaStep final : public AlphaStep {
     if (p_.alpha_m != 0.0) a1_.noalias() += on_a_ * a0;
     for (Index i = 0; i < terms_; ++i) a1_ += load[i] * on_load_.col(i);
     if (p_.alpha_f != 0.0)
-      for (Index i = 0; i < m_; ++i) a1_ -= (p_.alpha_f * from.slider_force[i]) * on_slider_.col(i);
+      for (Index i = 0; i < m_; ++i) a1_ -= (p_.alpha_f * from.slider_force[i]) * on_contact_.col(i);
 
     const double bh2 = p_.beta * h * h;
     if (m_ > 0) {
-      double in_place[sliders_in_place];
-      double* const trial = m_ <= sliders_in_place ? in_place : trial_.data();
-      for (Index i = 0; i < m_; ++i) {
+      double in_place[contacts_in_place];
+      double* const trial = m_ <= contacts_in_place ? in_place : trial_.data();
+      for (Index i = 0; i < sliders_; ++i) {
         const Index a = first_[static_cast<std::size_t>(i)], b = second_[static_cast<std::size_t>(i)];
         double travel = 0.0;  // u_free - u0
         if (a != ground) travel += qs_[a] - q0[a] + bh2 * a1_[a];
         if (b != ground) travel -= qs_[b] - q0[b] + bh2 * a1_[b];
         trial[i] = from.slider_force[i] + stiffness_[static_cast<std::size_t>(i)] * travel;
       }
-      if (!contact_.solve(trial, from.slider_force.data(), to.slider_force.data())) {
+      for (Index i = sliders_; i < m_; ++i) {
+        const auto& stop = system_.stops()[static_cast<std::size_t>(i - sliders_)];
+        const Index a = first_[static_cast<std::size_t>(i)], b = second_[static_cast<std::size_t>(i)];
+        const double hg = h * p_.gamma;
+        penetration_[i] = -stop.gap;
+        double rate = 0.0;
+        if (a != ground) penetration_[i] += qs_[a] + bh2 * a1_[a], rate += vs_[a] + hg * a1_[a];
+        if (b != ground) penetration_[i] -= qs_[b] + bh2 * a1_[b], rate -= vs_[b] + hg * a1_[b];
+        trial[i] = stop.stiffness * penetration_[i] + stop.damping * rate;
+      }
+      if (!contact_.solve(trial, from.slider_force.data(), to.slider_force.data(), penetration_.data())) {
         if (!std::isfinite(a1_.sum())) return {StepOutcome::not_finite, worst()};
         return {StepOutcome::not_converged, contact_.worst()};
       }
-      for (Index i = 0; i < m_; ++i) a1_ -= (end * to.slider_force[i]) * on_slider_.col(i);
+      for (Index i = 0; i < m_; ++i) a1_ -= (end * to.slider_force[i]) * on_contact_.col(i);
     }
     Eigen::Map<Column>(to.auxiliary_acceleration.data(), n_) = a1_;
     Eigen::Map<Column>(to.q.data(), n_) = qs_ + bh2 * a1_;
@@ -115,15 +131,15 @@ class DenseAlphaStep final : public AlphaStep {
 
   GeneralizedAlpha p_;
   const system::LocallyNonlinear& system_;
-  Index n_, m_, terms_ = 0;
+  Index n_, m_, sliders_, terms_ = 0;
   double h_ = 0.0;
   std::vector<Index> first_, second_;
   std::vector<double> stiffness_;
   Square on_q_, on_v_, on_a_;  // S^-1 times -K, -C, -alpha_m M
-  Wide on_load_, on_slider_;   // S^-1 times the patterns of the loads, and B
+  Wide on_load_, on_contact_;  // S^-1 times the patterns of the loads, and B
   Column a1_, qs_, vs_, qc_, vc_;
   ContactProblem contact_;
-  Vector trial_;
+  Vector trial_, penetration_;
 };
 
 }  // namespace

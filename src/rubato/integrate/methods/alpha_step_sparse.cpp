@@ -52,20 +52,21 @@ class SparseAlphaStep final : public AlphaStep {
       : p_(parameters),
         system_(system),
         n_(system.size()),
-        m_(system.slider_count()),
+        m_(system.contact_count()),
+        sliders_(system.slider_count()),
         rayleigh_(find_rayleigh(system)) {
     std::vector<Index> last;
-    for (const auto& slider : system.sliders())
-      for (const Index end : {slider.first, slider.second})
+    for (const auto& ends : system.contacts())
+      for (const Index end : {ends.first, ends.second})
         if (end != ground) last.push_back(end);
     std::sort(last.begin(), last.end());
     last.erase(std::unique(last.begin(), last.end()), last.end());
     factor_.analyse(SparseMatrix(system.mass() + system.damping() + system.stiffness()), last);
     k_ = factor_.last_count();
     const Index offset = n_ - k_;
-    for (const auto& slider : system.sliders()) {
-      first_.push_back(slider.first == ground ? ground : factor_.permuted(slider.first) - offset);
-      second_.push_back(slider.second == ground ? ground : factor_.permuted(slider.second) - offset);
+    for (const auto& ends : system.contacts()) {
+      first_.push_back(ends.first == ground ? ground : factor_.permuted(ends.first) - offset);
+      second_.push_back(ends.second == ground ? ground : factor_.permuted(ends.second) - offset);
     }
     order_.resize(static_cast<std::size_t>(n_));
     place_.resize(static_cast<std::size_t>(n_));
@@ -79,6 +80,7 @@ class SparseAlphaStep final : public AlphaStep {
     last_.resize(k_);
     push_.resize(k_);
     trial_.resize(m_);
+    penetration_.resize(m_);
   }
 
   bool prepare(double h) override {
@@ -94,14 +96,16 @@ class SparseAlphaStep final : public AlphaStep {
       if (first_[static_cast<std::size_t>(i)] != ground) joins(first_[static_cast<std::size_t>(i)], i) += 1.0;
       if (second_[static_cast<std::size_t>(i)] != ground) joins(second_[static_cast<std::size_t>(i)], i) -= 1.0;
     }
-    if (m_ > 0) contact_.reset(p_.beta * h * h * end * (joins.transpose() * inverse * joins), system_.sliders());
+    if (m_ == 0) return true;
+    const Matrix per_force = end * (joins.transpose() * inverse * joins);
+    contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
     return true;
   }
 
   StepReport solve(const system::State& from, const double* load, system::State& to) override {
     right_.setZero();
     add_loads(load);
-    add_to_sliders(-p_.alpha_f, from.slider_force, right_.data() + (n_ - k_));
+    add_to_contacts(-p_.alpha_f, from.slider_force, right_.data() + (n_ - k_));
     switch (products_) {
       case 1:
         eliminate<1>(from);
@@ -114,17 +118,25 @@ class SparseAlphaStep final : public AlphaStep {
     }
     if (m_ > 0) {
       factor_.last_solution(right_, last_);
-      for (Index i = 0; i < m_; ++i) {
+      for (Index i = 0; i < sliders_; ++i) {
         const double travel = free_travel(first_[static_cast<std::size_t>(i)], from) -
                               free_travel(second_[static_cast<std::size_t>(i)], from);
         trial_[i] = from.slider_force[i] + system_.sliders()[static_cast<std::size_t>(i)].stiffness * travel;
       }
-      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data())) {
+      for (Index i = sliders_; i < m_; ++i) {
+        const auto& stop = system_.stops()[static_cast<std::size_t>(i - sliders_)];
+        const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
+        penetration_[i] = system_.relative_displacement(i, from.q) - stop.gap +
+                          (free_travel(first, from) - free_travel(second, from));
+        trial_[i] = stop.stiffness * penetration_[i] +
+                    stop.damping * (free_velocity(first, from) - free_velocity(second, from));
+      }
+      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data(), penetration_.data())) {
         if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
         return {StepOutcome::not_finite, -1};
       }
       push_.setZero();
-      add_to_sliders(1.0 - p_.alpha_f, to.slider_force, push_.data());
+      add_to_contacts(1.0 - p_.alpha_f, to.slider_force, push_.data());
       factor_.subtract_from_last(push_, right_);
     }
     return advance(from, to);
@@ -260,7 +272,7 @@ class SparseAlphaStep final : public AlphaStep {
   }
 
   /// out += factor * B fc on the last k places.
-  void add_to_sliders(double factor, const Vector& force, double* out) const {
+  void add_to_contacts(double factor, const Vector& force, double* out) const {
     for (Index i = 0; i < m_; ++i) {
       const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
       if (first != ground) out[first] += factor * force[i];
@@ -268,27 +280,34 @@ class SparseAlphaStep final : public AlphaStep {
     }
   }
 
-  /// Displacement over the step of one of the last k places without the sliders' new forces.
+  /// Displacement over the step of one of the last k places without the contacts' new forces.
   double free_travel(Index place, const system::State& from) const {
     if (place == ground) return 0.0;
     const Index i = order_[static_cast<std::size_t>(n_ - k_ + place)];
     return h_ * from.v[i] + h_ * h_ * ((0.5 - p_.beta) * from.auxiliary_acceleration[i] + p_.beta * last_[place]);
   }
 
+  /// Its velocity at the end of the step without them.
+  double free_velocity(Index place, const system::State& from) const {
+    if (place == ground) return 0.0;
+    const Index i = order_[static_cast<std::size_t>(n_ - k_ + place)];
+    return from.v[i] + h_ * ((1.0 - p_.gamma) * from.auxiliary_acceleration[i] + p_.gamma * last_[place]);
+  }
+
   GeneralizedAlpha p_;
   const system::LocallyNonlinear& system_;
-  Index n_, m_, k_ = 0;
+  Index n_, m_, sliders_, k_ = 0;
   double h_ = 0.0;
   std::optional<Rayleigh> rayleigh_;
   numerics::OrderedLdlt factor_;
-  std::vector<Index> first_, second_;  // of each slider, among the last k places
+  std::vector<Index> first_, second_;  // of each contact, among the last k places
   std::vector<int> order_, place_;     // elimination place -> coordinate, and back
   Vector mass_;                        // its diagonal; empty if it is not diagonal
   int products_ = 0;
   std::vector<int> start_, column_;  // rows in the order of elimination, columns likewise, those beyond the diagonal
   std::vector<int> new_start_, new_column_;  // those that no earlier row has
   std::vector<double> diagonal_, coefficient_;
-  Vector combined_, right_, last_, push_, trial_;
+  Vector combined_, right_, last_, push_, trial_, penetration_;
   ContactProblem contact_;
 };
 

@@ -79,7 +79,8 @@ class AlphaStepper final : public Stepper {
 };
 
 /// Linear acceleration to t + theta h under the load continued linearly, then back to t + h on the same line. The
-/// return map of the sliders runs to t + theta h with the trial motion and to t + h with the accepted one.
+/// return map of the sliders runs to t + theta h with the trial motion and to t + h with the accepted one, and so do
+/// the stops.
 class WilsonStepper final : public Stepper {
  public:
   WilsonStepper(const WilsonTheta& method, const system::LocallyNonlinear& system)
@@ -110,6 +111,7 @@ class WilsonStepper final : public Stepper {
       const double travel = system_.relative_displacement(i, to.q) - system_.relative_displacement(i, from.q);
       to.slider_force[i] = std::clamp(from.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
     }
+    system_.set_stop_forces(to);
     return report;
   }
 

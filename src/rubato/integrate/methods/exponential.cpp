@@ -17,15 +17,20 @@ constexpr Index largest_size = 500;  // beyond, the matrix exponential of twice 
 
 /// y1 = E y0 + loads + sliders on y = (q, v), all columns from one matrix exponential of the structure augmented by
 /// what generates its inputs: an oscillator for each harmonic load (so resonance needs no special case), and a value
-/// with a slope for every other load and every slider.
+/// with a slope for every other load and every contact.
 class ExponentialStepper final : public Stepper {
  public:
   explicit ExponentialStepper(const system::LocallyNonlinear& system)
-      : system_(system), n_(system.size()), m_(system.slider_count()), loads_(system.loads()) {
+      : system_(system),
+        n_(system.size()),
+        m_(system.contact_count()),
+        sliders_(system.slider_count()),
+        loads_(system.loads()) {
     y0_.resize(2 * n_);
     y1_.resize(2 * n_);
     input_.resize(2 * static_cast<Index>(loads_.count()));
     trial_.resize(m_);
+    penetration_.resize(m_);
   }
 
   StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
@@ -45,14 +50,22 @@ class ExponentialStepper final : public Stepper {
     if (input_.size() > 0) y1_.noalias() += on_load_ * input_;
     if (m_ > 0) {
       y1_.noalias() -= (on_value_ - on_slope_) * from.slider_force;
-      for (Index i = 0; i < m_; ++i) {
+      for (Index i = 0; i < sliders_; ++i) {
         const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
         double travel = 0.0;
         if (slider.first != ground) travel += y1_[slider.first] - from.q[slider.first];
         if (slider.second != ground) travel -= y1_[slider.second] - from.q[slider.second];
         trial_[i] = from.slider_force[i] + slider.stiffness * travel;
       }
-      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data())) {
+      for (Index i = sliders_; i < m_; ++i) {
+        const auto& stop = system_.stops()[static_cast<std::size_t>(i - sliders_)];
+        penetration_[i] = -stop.gap;
+        double rate = 0.0;  // times h
+        if (stop.first != ground) penetration_[i] += y1_[stop.first], rate += y1_[n_ + stop.first];
+        if (stop.second != ground) penetration_[i] -= y1_[stop.second], rate -= y1_[n_ + stop.second];
+        trial_[i] = stop.stiffness * penetration_[i] + stop.damping * rate / h;
+      }
+      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data(), penetration_.data())) {
         if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
         return {StepOutcome::not_finite, loads_.fault()};
       }
@@ -87,9 +100,9 @@ class ExponentialStepper final : public Stepper {
       for (std::size_t k = 0; k < term.rows.size(); ++k) inputs(term.rows[k], i) += term.weights[k];
     }
     for (Index i = 0; i < m_; ++i) {
-      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
-      if (slider.first != ground) inputs(slider.first, loads + i) += 1.0;
-      if (slider.second != ground) inputs(slider.second, loads + i) -= 1.0;
+      const auto& ends = system_.contacts()[static_cast<std::size_t>(i)];
+      if (ends.first != ground) inputs(ends.first, loads + i) += 1.0;
+      if (ends.second != ground) inputs(ends.second, loads + i) -= 1.0;
     }
     // Eigen's solve reads the first of no columns.
     const Matrix driven = inputs.cols() > 0 ? Matrix(h * h * mass.solve(inputs)) : Matrix(n_, 0);
@@ -106,26 +119,26 @@ class ExponentialStepper final : public Stepper {
     on_load_ = flow.block(0, 2 * n_, 2 * n_, 2 * loads);
     on_value_.resize(2 * n_, m_);
     on_slope_.resize(2 * n_, m_);
-    Matrix compliance(m_, m_);
     for (Index i = 0; i < m_; ++i) {
       on_value_.col(i) = flow.block(0, 2 * n_ + 2 * (loads + i), 2 * n_, 1);
       on_slope_.col(i) = flow.block(0, 2 * n_ + 2 * (loads + i) + 1, 2 * n_, 1);
     }
     if (m_ > 0) {
-      compliance = inputs.rightCols(m_).transpose() * on_slope_.topRows(n_);
-      contact_.reset(compliance, system_.sliders());
+      const Matrix joins = inputs.rightCols(m_);
+      contact_.reset(joins.transpose() * on_slope_.topRows(n_), joins.transpose() * on_slope_.bottomRows(n_) / h,
+                     system_.sliders(), system_.stops());
     }
     h_ = h;
     return flow.allFinite();
   }
 
   const system::LocallyNonlinear& system_;
-  Index n_, m_;
+  Index n_, m_, sliders_;
   LoadValues loads_;
   double h_ = std::nan("");
   int factorisations_ = 0;
   Matrix propagator_, on_load_, on_value_, on_slope_;
-  Vector y0_, y1_, input_, trial_;
+  Vector y0_, y1_, input_, trial_, penetration_;
   ContactProblem contact_;
 };
 

@@ -10,7 +10,8 @@ namespace rubato::integrate {
 namespace {
 
 /// The tableau on (q, v). A stage sees the slider forces of the return map from the start of the step to the stage's
-/// displacement, so that within a step the law is a function of the displacement, as the implicit steps have it.
+/// displacement, so that within a step the law is a function of the displacement, as the implicit steps have it. The
+/// first stage keeps the forces of the start: that of a stop may have jumped there.
 class RungeKuttaStepper final : public Stepper {
  public:
   RungeKuttaStepper(const RungeKutta& method, const system::LocallyNonlinear& system)
@@ -37,7 +38,10 @@ class RungeKuttaStepper final : public Stepper {
         stage_.v += (h * tableau_.a[row][j]) * slope_v_[j];
       }
       stage_.t = tableau_.c[row] == 1.0 ? t1 : from.t + tableau_.c[row] * h;
-      slide(from, stage_);
+      if (i == 0)
+        stage_.slider_force = from.slider_force;
+      else
+        slide(from, stage_);
       slope_q_[row] = stage_.v;
       accelerate(tableau_.c[row] == 0.0 ? model::Side::right : model::Side::left, slope_v_[row]);
     }
@@ -75,6 +79,7 @@ class RungeKuttaStepper final : public Stepper {
       const double travel = system_.relative_displacement(i, end.q) - system_.relative_displacement(i, from.q);
       end.slider_force[i] = std::clamp(from.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
     }
+    system_.set_stop_forces(end);
   }
 
   void accelerate(model::Side side, Vector& acceleration) {

@@ -121,6 +121,7 @@ class StepperMap final : public PeriodMap {
       const double trial = stiffness(i) * (system_->relative_displacement(i, from_.q) - x[2 * n_ + i]);
       from_.slider_force[i] = std::clamp(trial, -limit, limit);
     }
+    system_->set_stop_forces(from_);
     if (carries_acceleration_) from_.auxiliary_acceleration = omega_ * omega_ * x.segment(2 * n_ + m_, n_);
   }
 
@@ -186,7 +187,7 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
     record.velocity(row, column) = observe(request_.observed[i], state.v);
     if (has_accelerations) record.acceleration(row, column) = observe(request_.observed[i], acceleration_);
   }
-  record.slider_force.col(column) = state.slider_force;
+  record.slider_force.col(column) = state.slider_force.head(system_.slider_count());
   for (Index i = 0; i < system_.slider_count(); ++i)
     record.displacement(i, column) = system_.relative_displacement(i, state.q);
   if (!record.has_works) return;
@@ -210,6 +211,7 @@ system::LocallyNonlinear with_excitation(const system::LocallyNonlinear& system,
   parts.sliders = system.sliders();
   for (std::size_t i = 0; i < parts.sliders.size(); ++i)
     parts.sliders[i].limit = excitation.limits[static_cast<Index>(i)];
+  parts.stops = system.stops();
   parts.start = system.start();
   parts.coordinates = system.coordinates();
   std::vector<system::LoadTerm> terms;

@@ -1,5 +1,6 @@
 #include <rubato/model/beams/line_element.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <array>
@@ -118,6 +119,46 @@ Eigen::Matrix3d local_axes(const Axis& along, const Axis& orientation) {
   axes.row(1) = z.cross(x);
   axes.row(2) = z;
   return axes;
+}
+
+bool release(std::uint16_t released, LineMatrix& stiffness, LineMatrix& mass) {
+  const int size = static_cast<int>(stiffness.rows());
+  std::array<int, 12> gone{}, kept{};
+  int r = 0, s = 0;
+  for (int i = 0; i < size; ++i) {
+    if (released >> i & 1)
+      gone[static_cast<std::size_t>(r++)] = i;
+    else
+      kept[static_cast<std::size_t>(s++)] = i;
+  }
+  LineMatrix own(r, r), cross(r, s);
+  for (int i = 0; i < r; ++i) {
+    const int row = gone[static_cast<std::size_t>(i)];
+    for (int j = 0; j < r; ++j) own(i, j) = stiffness(row, gone[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < s; ++j) cross(i, j) = stiffness(row, kept[static_cast<std::size_t>(j)]);
+  }
+  // Scaled to a unit diagonal, in which metres and radians compare.
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 12, 1> scale = own.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<LineMatrix> factor(LineMatrix(scale.asDiagonal() * own * scale.asDiagonal()));
+  constexpr double resists = 1e-10;
+  if (!(factor.info() == Eigen::Success && factor.vectorD().minCoeff() > resists)) return false;
+  const LineMatrix follows = -(scale.asDiagonal() * factor.solve(LineMatrix(scale.asDiagonal() * cross))).eval();
+  LineMatrix shape = LineMatrix::Zero(size, size);
+  for (int j = 0; j < s; ++j) {
+    const int column = kept[static_cast<std::size_t>(j)];
+    shape(column, column) = 1.0;
+    for (int i = 0; i < r; ++i) shape(gone[static_cast<std::size_t>(i)], column) = follows(i, j);
+  }
+  stiffness = (shape.transpose() * stiffness * shape).eval();
+  mass = (shape.transpose() * mass * shape).eval();
+  for (LineMatrix* matrix : {&stiffness, &mass}) {
+    *matrix = (0.5 * (*matrix + matrix->transpose())).eval();
+    for (int i = 0; i < r; ++i) {
+      matrix->row(gone[static_cast<std::size_t>(i)]).setZero();
+      matrix->col(gone[static_cast<std::size_t>(i)]).setZero();
+    }
+  }
+  return true;
 }
 
 void turn_into_model_axes(const Eigen::Matrix3d& axes, int dimension, bool has_rotations, LineMatrix& matrix) {

@@ -2,6 +2,8 @@
 
 #include <rubato/core/types.hpp>
 
+#include <cstdint>
+
 namespace rubato::model {
 
 using Axis = Eigen::Vector3d;
@@ -21,6 +23,9 @@ struct LineProperties {
   double inertia_y = 0.0, inertia_z = 0.0;        ///< second moments about y and z [m4]; the plane has z only
   double torsion = 0.0;                           ///< torsion constant J [m4], space only
   double shear_area_y = 0.0, shear_area_z = 0.0;  ///< kappa A for shear along y and z [m2]; 0: Euler-Bernoulli
+  /// Bit i: degree of freedom i of a beam, in its local axes and counted as in local_matrices, is not shared with the
+  /// node.
+  std::uint16_t released = 0;
 
   bool operator==(const LineProperties&) const = default;
 };
@@ -50,6 +55,17 @@ Bending bending_of(double bending_stiffness, double phi, double mass_per_length,
 ///   beam:  x, y, rz in the plane; x, y, z, rx, ry, rz in space      truss:  x, y; x, y, z
 void local_matrices(const LineProperties& properties, int dimension, double length, LineMatrix& stiffness,
                     LineMatrix& mass);
+
+/// Takes degrees of freedom out of the matrices of an element by static condensation: the element follows the others
+/// without resistance there. With T the columns of the static shape (-K_rr^-1 K_rs over the identity),
+///
+///   K <- T^T K T,   M <- T^T M T
+///
+/// exact for the stiffness; the mass is that of the motion with the static shape, as consistent as the element's own
+/// cubic (Guyan 1965; Irons 1965). Rows and columns of what is released become zero.
+/// @param released  bit i: row i
+/// @return false, with the matrices as they were, where nothing resists a motion of what is released: a mechanism
+bool release(std::uint16_t released, LineMatrix& stiffness, LineMatrix& mass);
 
 /// The rows are the local axes in those of the model: x along `along`, z normal to x and `orientation` (of the plane:
 /// the third axis). Neither vector needs unit length; they must not be parallel.

@@ -113,8 +113,8 @@ function hysteresis_loops(table, force) {
 
 // Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
 const ledger_panels = [
-  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated"], domain: [0.60, 1.0]},
-  {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored"], domain: [0.24, 0.54]},
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated"], domain: [0.60, 1.0]},
+  {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored"], domain: [0.24, 0.54]},
   {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
 ];
 
@@ -168,7 +168,10 @@ function is_transient(analysis) {
 
 function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
-  const of = (names) => names.map((name) => variable_of(table, name)).filter((variable) => variable && variable.labels.length);
+  const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
+  const of = (names) => names.map((name) => variable_of(table, name))
+    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable));
+  const stops = table.variables.filter((variable) => is_of_stops(variable) && variable.labels.length);
   const motion = of(["position", "velocity", "acceleration"]);
   const rotations = of(["angle", "angular_velocity", "angular_acceleration"]);
   const sliders = of(["force", "slip", "displacement"]), hinges = of(["moment", "slip_angle"]);
@@ -184,11 +187,12 @@ function write_transient(chapter, analysis) {
   if (rotations.length) add_section(chapter, "Rotations", history_figure(table, rotations, "Rotations of the nodes"));
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
-    const force = variable_of(table, "force");
+    const [force] = of(["force"]);
     if (force && (variable_of(table, "slip") || variable_of(table, "displacement"))) {
       add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
     }
   }
+  if (stops.length) add_section(chapter, "Stops", history_figure(table, stops, "Stops: force and penetration"));
   if (hinges.length === 2) {
     add_section(chapter, "Rotational sliders", history_figure(table, hinges, "Sliders between rotations: moment and slip"));
     add_section(chapter, "Moments over rotations", hysteresis_loops(table, hinges[0]));

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <rubato/model/description.hpp>
+#include <rubato/model/model.hpp>
+
+#include <string>
+
+// Private to the model floor: the parts of build() that look up no names.
+namespace rubato::model {
+
+/// @param part  "the force on \"blade1\"", for messages
+TimeLaw build_time_law(const TimeLawDescription& description, const numerics::Parameters& parameters,
+                       const std::string& part);
+
+/// @param n  coordinates of the model
+Damping build_damping(const DampingDescription& description, Index n, const numerics::Parameters& parameters);
+/// Where damping is described; of no damping, nowhere.
+Location where_of(const DampingDescription& description);
+
+/// Throws InvalidInput for a mass matrix with a diagonal entry that is missing or not positive.
+void require_masses(const MatricesDescription& matrices);
+/// The matrices, symmetric to the last bit. Throws InvalidInput where their sizes differ.
+FullMatrices build_matrices(const MatricesDescription& matrices);
+
+/// The value of a quantity. Throws InvalidInput, with `what` and the remedy, where it is negative.
+double at_least_zero(const Quantity& quantity, const numerics::Parameters& parameters, const std::string& what,
+                     const std::string& remedy = "");
+
+}  // namespace rubato::model
