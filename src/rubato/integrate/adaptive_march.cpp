@@ -108,6 +108,7 @@ class Marcher {
     const double error = estimator_.error(*from_, to_, length.step);
     report_.solves += estimator_.solves_a_try();
     const Decision decision = decide(plan_.controller, {length.step, error, estimator_.exponent()}, history_);
+    history_.forgone = decision.forgone;
     note(length.step, error, decision.accepts ? TryOutcome::accepted : TryOutcome::error_too_large);
     if (!decision.accepts) {
       ++report_.rejected;
@@ -169,7 +170,7 @@ class Marcher {
   }
 
   void accept(const Length& length, double error) {
-    history_ = {error, length.step, false};
+    history_ = {error, length.step, false, history_.forgone};
     estimator_.accept(to_);
     base_step_ = length.step;
     lost_ = length.lost;

@@ -10,31 +10,34 @@ struct Deciding {
   const ScaledError& tried;
   const ControlHistory& history;
 
-  Decision operator()(const FixedStep&) const { return {true, tried.step}; }
+  Decision operator()(const FixedStep&) const { return {true, tried.step, 0.0}; }
 
   Decision operator()(const CardonaCassano&) const {
     const double e = tried.error, h = tried.step;
-    if (!(e <= 1.0)) return {false, 0.5 * h};
-    if (e > 0.5) return {true, h * std::pow(0.5 / e, 1.0 / tried.exponent)};
-    if (e >= 1.0 / 16.0) return {true, h};
-    return {true, 2.0 * h};
+    if (!(e <= 1.0)) return {false, 0.5 * h, 0.0};
+    if (e > 0.5) return {true, h * std::pow(0.5 / e, 1.0 / tried.exponent), 0.0};
+    if (e >= 1.0 / 16.0) return {true, h, 0.0};
+    return {true, 2.0 * h, 0.0};
   }
 
   Decision operator()(const PiControl& pi) const {
-    const double e = tried.error, h = tried.step;
+    const double e = tried.error, h = tried.step, p = tried.exponent;
+    const auto factor_to = [p](double ratio) { return std::pow(ratio, 1.0 / p); };
     if (!(e <= 1.0)) {
-      const double factor = std::isfinite(e) ? pi.safety * std::pow(e, -1.0 / tried.exponent) : 0.0;
-      return {false, h * std::max(pi.shrink_most, factor)};
+      const double factor = std::isfinite(e) ? factor_to(pi.aim / e) : 0.0;
+      return {false, h * std::max(pi.shrink_most, factor), 0.0};
     }
-    const double p = tried.exponent;
     const double now = std::max(e, 1e-10);  // an error of zero asks for the largest growth, not for an infinite one
-    double factor = pi.safety * std::pow(now, -1.0 / p);
+    double factor = factor_to(pi.aim / now);
     if (history.last_error > 0.0) {
       const double density = history.last_error / now * std::pow(h / history.last_step, p);
       factor *= std::pow(std::min(1.0, density), pi.trend / p);
     }
-    if (factor >= pi.safety * pi.safety && factor < pi.keep) return {true, h};
-    return {true, h * std::clamp(factor, pi.shrink_most, history.was_rejected ? 1.0 : pi.grow_most)};
+    if (factor >= factor_to(pi.aim * pi.aim) && factor < factor_to(pi.aim / pi.least)) return {true, h, 0.0};
+    const double next = h * std::clamp(factor, pi.shrink_most, history.was_rejected ? 1.0 : pi.grow_most);
+    if (factor < 1.0 || factor >= factor_to(pi.aim / pi.at_once)) return {true, next, 0.0};
+    const double forgone = history.forgone + 1.0 - 1.0 / factor;
+    return forgone < pi.patience ? Decision{true, h, forgone} : Decision{true, next, 0.0};
   }
 };
 
