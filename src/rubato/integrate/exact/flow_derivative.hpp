@@ -31,7 +31,7 @@ class FlowDerivative {
   const system::LocallyNonlinear& system_;
   Index n_, m_, size_, rows_;  // rows of matrices, with those that fill vectors of four
   int degree_;
-  Matrix flow_, joins_;                               // (q, v)' without sliders; M^-1 B
+  Matrix flow_;                                       // (q, v)' without sliders
   std::map<std::vector<SliderState>, Matrix> cache_;  // A^k/k! by columns of k
   Matrix derivative_, propagator_, product_;          // [rows x size]
   Vector length_powers_;

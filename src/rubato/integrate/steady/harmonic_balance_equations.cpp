@@ -9,8 +9,7 @@ namespace {
 // Unknowns from which products beat factorisations: of 760 unknowns one takes 35 ms, a preconditioned product 0.6 ms.
 constexpr Index large_size = 100;
 constexpr int most_products = 25;
-constexpr double newton_tolerance = 1e-6;    // of a step: the next one is as small beside it
-constexpr double estimate_tolerance = 1e-3;  // of an error estimate
+constexpr double newton_tolerance = 1e-6;  // of a step: the next one is as small beside it
 
 }  // namespace
 
@@ -272,112 +271,6 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
     }
   }
   return outcome;
-}
-
-void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_t first, std::size_t end,
-                                          ComplexMatrix& left_out, ComplexMatrix& forces_left_out,
-                                          ComplexMatrix& force_change) {
-  const auto& harmonics = *harmonics_;
-  const auto m = static_cast<Index>(active_.size());
-  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  const int count = series.orders.count;
-  left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
-  forces_left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
-  force_change.setZero(count, stiffness_.size());
-  if (!any_slips()) return;
-  for (const Index j : active_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
-
-  // Each order alone, with its own part in the force: U + R (F + dF U) = 0.
-  Vector right(2 * m);
-  std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
-  for (std::size_t p = first; p < end; ++p) {
-    const CondensedHarmonic& harmonic = harmonics[p];
-    const int k = series.orders.at(static_cast<int>(p) - 1);
-    const auto place = static_cast<Index>(p - first);
-    Matrix& own = own_factor_.matrix(2 * m);
-    own.setIdentity();
-    right.setZero();
-    for (Index b = 0; b < m; ++b) {
-      const Index j = active_[static_cast<std::size_t>(b)];
-      const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
-      const auto at = static_cast<std::size_t>(b);
-      const Complex force = loop.force(k);
-      loop.derivative(k, k, by_real[at], by_imaginary[at]);
-      const double held = harmonic.held * stiffness_[j];
-      forces_left_out(place, j) = force;
-      for (Index a = 0; a < m; ++a) {
-        const Complex r = harmonic.receptance(active_[static_cast<std::size_t>(a)], j);
-        const Complex x = product(r, by_real[at] - held), y = product(r, by_imaginary[at] - Complex(0.0, held)),
-                      f = product(r, force);
-        own(2 * a, 2 * b) += x.real();
-        own(2 * a + 1, 2 * b) += x.imag();
-        own(2 * a, 2 * b + 1) += y.real();
-        own(2 * a + 1, 2 * b + 1) += y.imag();
-        right[2 * a] -= f.real();
-        right[2 * a + 1] -= f.imag();
-      }
-    }
-    own_factor_.factorise();
-    own_factor_.solve(right);
-    for (Index b = 0; b < m; ++b) {
-      const Index j = active_[static_cast<std::size_t>(b)];
-      const auto at = static_cast<std::size_t>(b);
-      left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
-      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at] -
-                                   harmonic.held * stiffness_[j] * left_out(place, j);
-    }
-  }
-
-  // What that does to the orders kept.
-  const bool is_new = factor_.size() != rows * m;
-  if (is_new || is_large(series)) differentiate(series);
-  if (is_new && !is_large(series)) factorise(series);
-  Vector mean_change = Vector::Zero(stiffness_.size());
-  for (const Index j : active_) {
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
-    for (std::size_t p = first; p < end; ++p) {
-      const int l = series.orders.at(static_cast<int>(p) - 1);
-      const Complex u = left_out(static_cast<Index>(p - first), j);
-      for (int i = 0; i < count; ++i) {
-        Complex real, imaginary;
-        loop.derivative(series.orders.at(i), l, real, imaginary);
-        force_change(i, j) += u.real() * real + u.imag() * imaginary;
-      }
-      if (series.has_mean) {
-        double real, imaginary;
-        loop.mean_derivative(l, real, imaginary);
-        mean_change[j] += u.real() * real + u.imag() * imaginary;
-      }
-    }
-  }
-  Vector change = -residual_;
-  for (Index a = 0; a < m; ++a) {
-    const Index row = active_[static_cast<std::size_t>(a)];
-    if (series.has_mean) {
-      for (const Index j : active_) change[a * rows] -= harmonics[0].receptance(row, j).real() * mean_change[j];
-    }
-    for (int i = 0; i < count; ++i) {
-      Complex sum = 0.0;
-      for (const Index j : active_)
-        sum -= product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), force_change(i, j));
-      change[a * rows + shift + 2 * i] += sum.real();
-      change[a * rows + shift + 2 * i + 1] += sum.imag();
-    }
-  }
-  solve_linear(series, estimate_tolerance, change);
-  for (Index b = 0; b < m; ++b) {
-    const Index j = active_[static_cast<std::size_t>(b)];
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
-    for (int l = 0; l < count; ++l) {
-      const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
-      force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * stiffness_[j] * Complex(re, im);
-      for (int i = 0; i < count; ++i) {
-        Complex real, imaginary;
-        loop.derivative(series.orders.at(i), series.orders.at(l), real, imaginary);
-        force_change(i, j) += re * real + im * imaginary;
-      }
-    }
-  }
 }
 
 }  // namespace rubato::integrate

@@ -1,0 +1,213 @@
+#include <rubato/integrate/steady/equivalent_linear.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+// One pass of the flow, Newton's step from it, and their repetition.
+namespace rubato::integrate {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double good_enough = 1e-10;  // residual that is accepted where round-off allows no smaller one
+constexpr double suspicious = 1e3;     // a step that much longer than the state: a resonance without damping?
+constexpr double walking = 1e-9;       // drift over a period, relative to the state, that is none of round-off
+constexpr int most_halvings = 3, most_moves = 60, longest_stretch = 64;
+
+}  // namespace
+
+/// Keeps the pieces of a pass.
+class PeriodicSolver::Recorder final : public ExactVisitor {
+ public:
+  explicit Recorder(Orbit& orbit) : orbit_(orbit) { orbit_.clear(); }
+  bool sample(const system::State&, const ExactWork&) override { return true; }
+  bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
+  void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) override {
+    orbit_.add(piece, start, length, states);
+  }
+
+ private:
+  Orbit& orbit_;
+};
+
+// One pass of the flow from y_, over a period or half of it: orbit and P(y) - y.
+bool PeriodicSolver::pass(const Excitation& excitation) {
+  start_.t = 0.0;
+  start_.q = y_.head(n_);
+  start_.v = y_.segment(n_, n_);
+  start_.slider_force = y_.tail(m_);
+  end_ = start_;
+  Recorder recorder(orbit_);
+  factors_are_of_orbit_ = false;
+  const ExactReport report = flow_.advance(end_, excitation.period() * (half_ ? 0.5 : 1.0), {}, recorder);
+  if (report.end != ExactEnd::reached) return false;
+  const double sign = half_ ? -1.0 : 1.0;
+  difference_.head(n_) = sign * end_.q - y_.head(n_);
+  difference_.segment(n_, n_) = sign * end_.v - y_.segment(n_, n_);
+  difference_.tail(m_) = sign * end_.slider_force - y_.tail(m_);
+  drift_.setZero(n_);
+  if (!half_ && rigid_.cols() > 0) {
+    const Matrix open = open_motions();
+    drift_ = open * (open.transpose() * (system_.mass() * difference_.head(n_)));
+    difference_.head(n_) -= drift_;
+  }
+  return difference_.allFinite();
+}
+
+double PeriodicSolver::residual(const Excitation& excitation) {
+  const double size = size_of(excitation, y_), moved = size_of(excitation, difference_);
+  double result = moved > 0.0 ? moved / size : 0.0;
+  if (const double drifted = drift(excitation); drifted <= walking) result = std::max(result, drifted);
+  for (Index i = 0; i < m_; ++i)
+    if (excitation.limits[i] > 0.0) result = std::max(result, std::abs(difference_[2 * n_ + i]) / excitation.limits[i]);
+  return result;
+}
+
+// Over the period of the pass, relative to the state.
+double PeriodicSolver::drift(const Excitation& excitation) const {
+  const double squared = drift_.dot(system_.mass() * drift_);
+  return squared > 0.0 ? std::sqrt(squared) / size_of(excitation, y_) : 0.0;
+}
+
+// Newton's matrix at y_, from the pass just made.
+void PeriodicSolver::factorise() {
+  if (factors_are_of_orbit_) return;
+  factors_are_of_orbit_ = true;
+  derivative_.set_identity();
+  orbit_.carry(derivative_);
+  matrix_ = derivative_.matrix();
+  if (half_) matrix_ = -matrix_;
+  matrix_.diagonal().array() -= 1.0;
+  if (!half_)
+    for (Index i = 0; i < m_; ++i) {
+      if (orbit_.slips(i)) continue;
+      // Its force repeats if the displacements do; what is left open is its offset.
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      const Index row = 2 * n_ + i;
+      matrix_.row(row).setZero();
+      matrix_(row, row) = 1.0;
+      if (slider.first != ground) matrix_(row, slider.first) -= slider.stiffness;
+      if (slider.second != ground) matrix_(row, slider.second) += slider.stiffness;
+    }
+  if (!half_ && rigid_.cols() > 0) hold_rigid_motions();
+  factors_.compute(matrix_);
+}
+
+// Rigid motions that no slider which sticks in the pass holds, phi^T M phi = 1 [n x any].
+Matrix PeriodicSolver::open_motions() const {
+  Matrix held = Matrix::Zero(m_, rigid_.cols());
+  for (Index i = 0; i < m_; ++i)
+    if (!orbit_.slips(i))
+      for (Index k = 0; k < rigid_.cols(); ++k) held(i, k) = system_.relative_displacement(i, rigid_.col(k));
+  const Eigen::FullPivLU<Matrix> holds(held);
+  const Index open = holds.dimensionOfKernel();
+  if (open == 0) return Matrix(n_, 0);
+  const Eigen::HouseholderQR<Matrix> basis(holds.kernel());
+  return rigid_ * (basis.householderQ() * Matrix::Identity(rigid_.cols(), open));
+}
+
+// The orbit may lie anywhere along an open motion: Newton's steps leave it in place, in the metric of the mass.
+void PeriodicSolver::hold_rigid_motions() {
+  const Matrix open = open_motions();
+  matrix_.topLeftCorner(n_, n_) += open * (open.transpose() * Matrix(system_.mass()));
+}
+
+// Newton's step from y_, with the matrix last factorised. False at a resonance without damping.
+bool PeriodicSolver::correct() {
+  right_side_ = -difference_;
+  if (!half_)
+    for (Index i = 0; i < m_; ++i)
+      if (!orbit_.slips(i)) right_side_[2 * n_ + i] = offset_shift_[i];
+  correction_.noalias() = factors_.solve(right_side_);
+  return correction_.allFinite();
+}
+
+// Where the points before led nowhere: from a guess that knows nothing of them, then from where nothing moves. The best
+// that all found is left in y_ and the orbit.
+bool PeriodicSolver::iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response) {
+  Vector best = y_;
+  double least = response.residual;
+  for (const bool from_guess : {true, false}) {
+    if (response.status == SteadyStatus::unbounded) return false;
+    if (from_guess && known_.empty()) continue;
+    if (from_guess)
+      guess(excitation);
+    else
+      y_.setZero();
+    if (iterate(excitation, response)) return true;
+    if (response.residual < least) {
+      least = response.residual;
+      best = y_;
+    }
+  }
+  y_ = best;
+  near_factors_ = false;
+  response.residual = pass(excitation) ? residual(excitation) : infinity;
+  return false;
+}
+
+// Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
+// the flow itself is followed then.
+bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
+  double best = infinity;
+  int halvings = 0, periods = 0, stretch = 4;
+  const int first = response.iterations;
+  bool may_move = true, moving = false;
+  near_factors_ = false;
+  Vector settled;  // an orbit whose offsets are being moved
+  while (response.iterations < first + options_.most_iterations) {
+    ++response.iterations;
+    double& last = response.residual;
+    last = pass(excitation) ? residual(excitation) : infinity;
+    if (last <= options_.tolerance) {
+      if (!may_move || response.iterations > first + most_moves || !must_move_offsets(excitation)) return true;
+      settled = y_;
+      moving = true;
+      best = infinity;
+    }
+    // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
+    const bool factors_do = near_factors_ && 2.0 * last * last < 0.1 * options_.tolerance * best;
+    near_factors_ = false;
+    if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
+      best = last;
+      best_ = y_;
+      halvings = 0;
+      if (!factors_do) factorise();
+      const bool solved = correct();
+      offset_shift_.setZero();
+      if (solved) {
+        put(best_ + correction_, excitation);
+        near_factors_ = true;
+        if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
+      }
+      if (is_driven_beyond_friction(system_, excitation)) {
+        response.status = SteadyStatus::unbounded;
+        return false;
+      }
+    } else if (best <= good_enough && best < infinity && !moving) {  // round-off: nothing better can be had
+      y_ = best_;
+      response.residual = pass(excitation) ? residual(excitation) : infinity;
+      return response.residual <= good_enough;
+    } else if (moving) {  // another slider slips then: the offset stays
+      moving = may_move = false;
+      y_ = settled;
+      best = infinity;
+    } else if (halvings < most_halvings && best < infinity) {
+      put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
+    } else {
+      if (best < infinity) y_ = best_;
+      if (periods >= options_.most_periods || !march(excitation, stretch)) return false;
+      periods += stretch;
+      stretch = std::min(2 * stretch, longest_stretch);
+      best = infinity;
+      halvings = 0;
+    }
+  }
+  return false;
+}
+
+}  // namespace rubato::integrate
