@@ -1,11 +1,11 @@
-#include <rubato/analysis/damper_curve.hpp>
-#include <rubato/analysis/damper_curve_plan.hpp>
-#include <rubato/analysis/frequency_response.hpp>
-#include <rubato/analysis/frequency_response_plan.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/static.hpp>
+#include <rubato/analysis/steady/damper_curve.hpp>
+#include <rubato/analysis/steady/damper_curve_plan.hpp>
+#include <rubato/analysis/steady/frequency_response.hpp>
+#include <rubato/analysis/steady/frequency_response_plan.hpp>
 #include <rubato/analysis/structure_tables.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>

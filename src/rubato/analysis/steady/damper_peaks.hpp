@@ -1,0 +1,79 @@
+#pragma once
+
+#include <rubato/analysis/steady/damper_curve_plan.hpp>
+#include <rubato/analysis/steady/frequency_response_tables.hpp>
+#include <rubato/analysis/steady/optimum.hpp>
+#include <rubato/analysis/steady/parametric_excitation.hpp>
+#include <rubato/analysis/steady/steady_route.hpp>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// The objective over frequency and over the parameter of a damper curve, for one line of its sweep: amplitudes of what
+/// is observed, or the friction work of all sliders. What it answers for a value of the parameter does not depend on
+/// the values asked for before. One a thread.
+class DamperPeaks final : public PeakFamily {
+ public:
+  /// @param stop  asks to give up: then there are no peaks
+  DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+              const std::atomic<bool>& stop);
+
+  /// Goes on to a line of the sweep.
+  void take_line(long line);
+
+  std::vector<Peak> peaks(double parameter) override;
+  std::optional<Peak> follow(double parameter, const Peak& known) override;
+
+  /// Amplitudes of a linear limit: of the structure without sliders, or with all of them stuck. An infinite one where
+  /// the loads meet a resonance without damping.
+  std::vector<Peak> limit_peaks(double parameter, bool is_stuck);
+
+  /// The whole response at a place of the curve. Its status says what became of it.
+  const integrate::SteadyResponse& response_at(double parameter, double angular_frequency);
+
+  /// What became of the points that were solved for the last `peaks`: how many of each status, and where the first was
+  /// that did not converge.
+  struct Scan {
+    std::array<long, point_statuses> by_status{};
+    double first_unbounded = 0.0;  ///< [rad/s]
+    std::string reason;            ///< why there is no model at a point; empty where there is
+    bool has_negative_load = false;
+    double negative_load = 0.0;  ///< [N]
+    std::size_t negative_slider = 0;
+  };
+  const Scan& scan() const { return scan_; }
+  /// How many amplitudes there are.
+  std::size_t observed() const { return plan_.observed.size(); }
+  /// Points solved since it was made.
+  double solves() const { return solves_; }
+
+ private:
+  bool take(double parameter, bool begins_afresh);
+  bool take_point(double angular_frequency);
+  void require_structure(double point);
+  bool evaluate(integrate::SteadySolver& solver, double angular_frequency, Vector& values);
+  PeakRange range();
+
+  const DamperCurvePlan& plan_;
+  const StudyInput& input_;
+  const SteadySolvers& make_;
+  const std::atomic<bool>& stop_;
+
+  ParametricExcitation drive_;
+  std::vector<double> values_;  ///< of the swept parameters, and the curve's own
+  std::unique_ptr<ParametricStructure> structure_;
+  std::vector<double> structure_values_;  ///< what it was built with
+  std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
+  Vector natural_;  ///< natural frequencies of both limits [rad/s]
+  integrate::Excitation excitation_;
+  integrate::SteadyResponse response_;
+  Scan scan_;
+  double solves_ = 0.0;
+};
+
+}  // namespace rubato::analysis

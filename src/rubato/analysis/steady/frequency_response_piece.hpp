@@ -1,0 +1,127 @@
+#pragma once
+
+#include <rubato/analysis/run_context.hpp>
+#include <rubato/analysis/steady/frequency_response_tables.hpp>
+#include <rubato/analysis/steady/parametric_excitation.hpp>
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A part of a sweep that is solved in one go, beginning afresh: some lines, side by side, over some steps.
+struct SweepPiece {
+  long first_line = 0;
+  int lines = 1;
+  std::size_t first_step = 0, steps = 0;
+};
+
+/// What was counted over points, which are numbered line by line.
+struct SweepCounts : StatusCounts {
+  double iterations = 0.0;
+
+  void add(const SweepCounts& other);
+};
+
+/// Rows of a piece, table by table, in the order of lines and steps.
+struct PieceResult {
+  SweepPiece piece;
+  bool is_whole = true;  ///< false: interrupted, and the rows are those of the points that were reached
+  std::vector<double> main, linear, waveforms;
+  SweepCounts counts;
+
+  /// As one list of numbers, and back, for the journal.
+  std::vector<double> packed() const;
+  static PieceResult unpacked(const SweepPiece& piece, std::span<const double> values);
+};
+
+/// The tables of a frequency response; they know where each number goes.
+struct SweepTables {
+  ResponseTable main;
+  LinearTable linear;
+  WaveformTable waveforms;
+};
+
+/// Counts finished points over all threads and tells of them, from whichever thread is free to.
+class SweepProgress {
+ public:
+  /// @param points_a_report  1 where a point takes long
+  SweepProgress(Progress& progress, long points_a_report) : progress_(progress), points_a_report_(points_a_report) {}
+  /// `count` may be negative: points that are solved again.
+  void add(long count) {
+    const long now = points_.fetch_add(count, std::memory_order_relaxed) + count;
+    if (now % points_a_report_ == 0) tell();
+  }
+
+ private:
+  void tell() {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock) progress_.advance(static_cast<double>(points_.load(std::memory_order_relaxed)));
+  }
+  Progress& progress_;
+  long points_a_report_;
+  std::atomic<long> points_{0};
+  std::mutex mutex_;
+};
+
+/// Solves pieces of a sweep; what it answers for a piece does not depend on the pieces before. One a thread.
+class PieceSolver {
+ public:
+  /// @param stop  asks to leave at the next point
+  PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+              const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop);
+
+  PieceResult solve(const SweepPiece& piece);
+  /// How many points the solver of the first line takes side by side.
+  int lanes();
+  /// What is wrong with a point that no model can have; empty if nothing is.
+  std::string reason(long line, std::size_t step);
+  /// The sliders with a negative load at a point.
+  std::vector<ParametricExcitation::NegativeLoad> negative_loads(long line, std::size_t step);
+  /// How far what is observed drifts in a period at a point; empty where it does not [o] [m].
+  Vector drift(long line, std::size_t step);
+
+ private:
+  struct Lane {
+    std::unique_ptr<ParametricExcitation> drive;
+    std::vector<double> values;  ///< of the swept parameters
+    bool has_limits = false;     ///< the linear limits are those of no line before
+    PieceResult result;
+  };
+
+  void solve_line(const SweepPiece& piece, PieceResult& result);
+  bool solve_lanes(const SweepPiece& piece, PieceResult& result);
+  void forget();
+  void take_line(Lane& lane, long line);
+  Lane& take_point(long line, std::size_t step);
+  void march_without_period(Lane& lane, double point, integrate::SteadyResponse& response);
+  void solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result);
+  void require_structure(Lane& lane, double point);
+  void finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
+                    const integrate::SteadyResponse& response, PieceResult& result);
+  RowPlace place_of(const Lane& lane, std::size_t step) const;
+  double point_value(std::size_t step) const;
+  double point_number(long line, std::size_t step) const;
+  Lane& lane(std::size_t index);
+
+  const FrequencyResponsePlan& plan_;
+  const StudyInput& input_;
+  const SteadySolvers& make_;
+  const SweepTables& tables_;
+  SweepProgress& progress_;
+  const std::atomic<bool>& stop_;
+
+  std::vector<Lane> lanes_;
+  std::vector<integrate::Excitation> excitations_;
+  std::vector<integrate::SteadyResponse> responses_;
+  std::unique_ptr<ParametricStructure> structure_;
+  std::vector<double> structure_values_;  ///< the structural parameters that it was built with
+  std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
+  integrate::SteadyResponse free_response_, stuck_response_;
+};
+
+}  // namespace rubato::analysis

@@ -1,0 +1,109 @@
+#include <rubato/analysis/steady/steady_plan.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rubato::analysis {
+namespace {
+
+using Role = ParameterDependence::Role;
+
+Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
+
+std::string quoted(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", name);
+  return text;
+}
+
+}  // namespace
+
+void require_harmonic_loads(const model::ModelDescription& model, const Location& where, const std::string& title) {
+  const auto require = [&](const model::TimeLawDescription& law, const Location& place_of_load,
+                           const std::string& part) {
+    if (std::holds_alternative<model::HarmonicDescription>(law)) return;
+    throw InvalidInput(
+        place(place_of_load, where),
+        fmt::format("{}{} is {}: a steady response needs harmonic loads (amplitude, angular_frequency, "
+                    "phase); write it as a sum of them, or run a transient",
+                    title, part, std::holds_alternative<model::TableDescription>(law) ? "a table" : "a formula of t"));
+  };
+  for (const auto& force : model.forces) require(force.law, force.where, fmt::format("the force on \"{}\"", force.on));
+  if (model.base_motion) require(model.base_motion->law, model.base_motion->where, "[base_motion]");
+  if (model.forces.empty() && !model.base_motion)
+    throw InvalidInput(where, title + "nothing drives the model; add a [[force]] with amplitude and angular_frequency");
+}
+
+std::size_t excitation_parameter(const NamedParameter& wanted, const VariedParameters& varied, const StudyInput& input,
+                                 const std::string& title, const Location& where) {
+  std::vector<std::string> known;
+  for (const auto& parameter : input.parameters) known.push_back(parameter.first);
+  const ParameterDependence dependence(input.study, input.parameters, varied.places);
+  const auto is_varied = [&](std::size_t i) {
+    return std::find(varied.places.begin(), varied.places.end(), i) != varied.places.end();
+  };
+  std::size_t chosen = known.size();
+  const Location at = place(wanted.where, where);
+  if (!wanted.name.empty()) {
+    const auto found = std::find(known.begin(), known.end(), wanted.name);
+    if (found == known.end())
+      throw InvalidInput(at, fmt::format("{}excitation names \"{}\", which is no parameter{}", title, wanted.name,
+                                         suggestion(wanted.name, known)));
+    chosen = static_cast<std::size_t>(found - known.begin());
+  } else {
+    std::vector<std::string> candidates, free;
+    for (const std::size_t i : dependence.in_frequencies()) {
+      candidates.push_back(known[i]);
+      if (is_varied(i)) continue;
+      free.push_back(known[i]);
+      chosen = i;
+    }
+    if (candidates.empty())
+      throw InvalidInput(where, title +
+                                    "no parameter drives the forces: write angular_frequency = \"Omega\" in the "
+                                    "[[force]], and Omega = ... in [parameters]");
+    if (free.size() > 1)
+      throw InvalidInput(where, fmt::format("{}several parameters stand in the frequencies of the forces ({}); say "
+                                            "which one takes the frequencies: excitation = \"{}\"",
+                                            title, quoted(free), free.front()));
+    if (free.empty()) chosen = dependence.in_frequencies().front();
+  }
+  for (std::size_t i = 0; i < varied.places.size(); ++i)
+    if (varied.places[i] == chosen)
+      throw InvalidInput(varied.where[i], fmt::format("{}the parameter \"{}\" takes the frequencies and cannot be "
+                                                      "swept at once; give its values as angular_frequency",
+                                                      title, known[chosen]));
+  if (!dependence.reaches(chosen, Role::frequency))
+    throw InvalidInput(at, fmt::format("{}no force has a frequency that depends on the parameter \"{}\"; write "
+                                       "angular_frequency = \"{}\" in the [[force]]",
+                                       title, known[chosen], known[chosen]));
+  return chosen;
+}
+
+void Possibility::require() const {
+  if (is_possible_ || !fault_) return;
+  throw InvalidInput(place(fault_->where(), where_), title_ + fault_->message());
+}
+
+ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size_t> varied) {
+  for (std::size_t i = 0; i < input.parameters.size(); ++i)
+    if (std::any_of(input.overrides.begin(), input.overrides.end(),
+                    [&](const auto& setting) { return setting.first == input.parameters[i].first; }))
+      varied.push_back(i);
+  return ParameterDependence(input.study, input.parameters, varied);
+}
+
+void require_effect(const ParameterDependence& dependence, std::size_t parameter, const NamedParameter& named,
+                    const std::vector<std::string>& columns, const std::string& kind, const std::string& title) {
+  if (!dependence.reaches_anything(parameter))
+    throw InvalidInput(named.where, fmt::format("{}nothing in the model depends on the {} \"{}\"; use it there, or "
+                                                "leave it out of the {}",
+                                                title, kind, named.name, kind == "parameter" ? "analysis" : "sweep"));
+  if (std::find(columns.begin(), columns.end(), named.name) != columns.end())
+    throw InvalidInput(named.where, fmt::format("{}the {} \"{}\" would head a column of results that has another "
+                                                "meaning; rename it",
+                                                title, kind, named.name));
+}
+
+}  // namespace rubato::analysis

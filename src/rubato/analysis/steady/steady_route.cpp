@@ -1,0 +1,71 @@
+#include <rubato/analysis/steady/steady_route.hpp>
+#include <rubato/integrate/steady/harmonic_balance.hpp>
+#include <rubato/integrate/steady/linear_response.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
+
+namespace rubato::analysis {
+namespace {
+
+using integrate::SteadyRequest;
+using system::LocallyNonlinear;
+
+std::unique_ptr<integrate::SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                const SteadyRequest& request, bool stuck) {
+  return std::make_unique<integrate::LinearResponse>(
+      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request, route.linear);
+}
+
+std::unique_ptr<integrate::SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                  const SteadyRequest& request) {
+  integrate::PeriodicOptions options;
+  if (route.tolerance > 0.0) options.tolerance = route.tolerance;
+  return std::make_unique<integrate::PeriodicSolver>(system, request, options);
+}
+
+std::unique_ptr<integrate::SteadySolver> harmonic_balance(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                          const SteadyRequest& request) {
+  integrate::HarmonicBalanceOptions options;
+  if (route.tolerance > 0.0) options.tolerance = route.tolerance;
+  return std::make_unique<integrate::HarmonicBalanceSolver>(system, request, options);
+}
+
+std::unique_ptr<integrate::SteadySolver> time_marching(const SteadyRoute& route, const LocallyNonlinear& system,
+                                                       const SteadyRequest& request) {
+  return std::make_unique<integrate::TimeMarchingSolver>(system, marching_options(route), request);
+}
+
+}  // namespace
+
+integrate::TimeMarchingOptions marching_options(const SteadyRoute& route) {
+  integrate::TimeMarchingOptions options;
+  options.method = route.method;
+  if (route.tolerance > 0.0) options.tolerance = route.tolerance;
+  if (route.steps_per_period > 0) options.steps_per_period = static_cast<int>(route.steps_per_period);
+  if (route.max_periods > 0) options.max_periods = static_cast<int>(route.max_periods);
+  return options;
+}
+
+std::string route_name(SteadyRoute::Kind kind) {
+  if (kind == SteadyRoute::Kind::harmonic_balance) return "harmonic_balance";
+  return kind == SteadyRoute::Kind::time_marching ? "time_marching" : "periodic";
+}
+
+SteadySolvers steady_solvers(const SteadyRoute& route) {
+  SteadySolvers solvers;
+  solvers.free = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, false);
+  };
+  solvers.stuck = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return linear(route, system, request, true);
+  };
+  solvers.response = [route](const LocallyNonlinear& system,
+                             const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
+    if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);
+    if (system.slider_count() == 0) return linear(route, system, request, false);
+    return route.kind == SteadyRoute::Kind::periodic ? periodic(route, system, request)
+                                                     : harmonic_balance(route, system, request);
+  };
+  return solvers;
+}
+
+}  // namespace rubato::analysis

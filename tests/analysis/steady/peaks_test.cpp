@@ -1,0 +1,113 @@
+#include <rubato/analysis/steady/peaks.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rubato::analysis {
+namespace {
+
+/// The amplitude of a damped oscillator of unit stiffness over frequency: largest at w sqrt(1 - 2 d^2).
+struct Oscillator {
+  double natural, damping_ratio, force = 1.0;
+  double operator()(double w) const {
+    const double r = w / natural;
+    return force / std::hypot(1.0 - r * r, 2.0 * damping_ratio * r);
+  }
+  double peak() const { return natural * std::sqrt(1.0 - 2.0 * damping_ratio * damping_ratio); }
+  double highest() const { return 0.5 * force / (damping_ratio * std::sqrt(1.0 - damping_ratio * damping_ratio)); }
+};
+
+template <typename... Functions>
+Curves curves(Functions... functions) {
+  return [=](double x, Vector& values) {
+    values.resize(sizeof...(functions));
+    Index i = 0;
+    ((values[i++] = functions(x)), ...);
+    return true;
+  };
+}
+
+TEST(Peaks, AreWhereTheAmplitudeOfAnOscillatorIsLargest) {
+  for (const double damping : {0.2, 0.02, 0.002}) {
+    const Oscillator oscillator{3.0, damping};
+    const auto peaks = find_peaks(curves(oscillator), {1.0, 5.0, 17, {3.0}});
+    ASSERT_EQ(peaks.size(), 1u) << damping;
+    EXPECT_EQ(peaks[0].kind, Peak::Kind::interior);
+    EXPECT_NEAR(peaks[0].at, oscillator.peak(), 2e-9 * oscillator.peak());
+    // The height is flat at the top: its error is the square of that of the place, and round-off.
+    EXPECT_NEAR(peaks[0].value, oscillator.highest(), 1e-12 * oscillator.highest());
+    EXPECT_NEAR(peaks[0].slope, 0.0, 1e-6 * peaks[0].value / (damping * peaks[0].at));
+  }
+}
+
+TEST(Peaks, BetweenTheSamplesAreFoundWhereTheyAreExpected) {
+  const Oscillator broad{4.0, 0.1}, narrow{2.0317, 1e-5, 2e-5};
+  const auto sum = [=](double x) { return broad(x) + narrow(x); };
+  const auto blind = find_peaks(curves(sum), {1.0, 6.0, 17, {}});
+  EXPECT_EQ(blind.size(), 1u);
+  const auto peaks = find_peaks(curves(sum), {1.0, 6.0, 17, {2.0317}});
+  ASSERT_EQ(peaks.size(), 2u);
+  EXPECT_NEAR(peaks[0].value, broad.highest(), 1e-3);
+  EXPECT_NEAR(peaks[1].at, 2.0317, 1e-7);
+}
+
+TEST(Peaks, OfSeveralCurvesComeWithTheHighestFirst) {
+  const Oscillator low{2.0, 0.1}, high{3.0, 0.05};
+  const auto peaks = find_peaks(curves(low, high), {1.0, 5.0, 33, {}});
+  ASSERT_EQ(peaks.size(), 2u);
+  EXPECT_EQ(peaks[0].curve, 1);
+  EXPECT_EQ(peaks[1].curve, 0);
+  EXPECT_NEAR(peaks[1].at, low.peak(), 1e-8);
+}
+
+TEST(Peaks, AtAnEndOfTheRangeSayThatTheyAre) {
+  const auto rising = find_peaks(curves([](double x) { return x * x; }), {1.0, 2.0, 9, {}});
+  ASSERT_EQ(rising.size(), 1u);
+  EXPECT_EQ(rising[0].kind, Peak::Kind::upper_end);
+  EXPECT_EQ(rising[0].at, 2.0);
+  EXPECT_NEAR(rising[0].slope, 4.0, 1e-4);
+  const auto falling = find_peaks(curves([](double x) { return 1.0 / x; }), {1.0, 2.0, 9, {}});
+  ASSERT_EQ(falling.size(), 1u);
+  EXPECT_EQ(falling[0].kind, Peak::Kind::lower_end);
+}
+
+TEST(Peaks, BetweenAnEndAndTheFirstSampleAreInterior) {
+  const Oscillator oscillator{1.06, 0.01};
+  const auto peaks = find_peaks(curves(oscillator), {1.0585, 2.0, 9, {}});
+  ASSERT_EQ(peaks.size(), 1u);
+  EXPECT_EQ(peaks[0].kind, Peak::Kind::interior);
+  EXPECT_NEAR(peaks[0].at, oscillator.peak(), 1e-8);
+}
+
+TEST(Peaks, AtACornerHaveNoSlope) {
+  const auto peaks = find_peaks(curves([](double x) { return 1.0 - std::abs(x - 1.23456789); }), {1.0, 2.0, 9, {}});
+  ASSERT_EQ(peaks.size(), 1u);
+  EXPECT_NEAR(peaks[0].at, 1.23456789, 1e-5);
+  EXPECT_TRUE(std::isnan(peaks[0].slope));
+}
+
+TEST(Peaks, AreFoundThoughSomePointsHaveNoValue) {
+  const Oscillator oscillator{3.0, 0.05};
+  const Curves holes = [=](double x, Vector& values) {
+    values.setConstant(1, oscillator(x));
+    return !(x > 1.9 && x < 2.1);
+  };
+  const auto peaks = find_peaks(holes, {1.0, 5.0, 17, {}});
+  ASSERT_EQ(peaks.size(), 1u);
+  EXPECT_NEAR(peaks[0].at, oscillator.peak(), 1e-8);
+  EXPECT_TRUE(find_peaks([](double, Vector&) { return false; }, {1.0, 5.0, 17, {}}).empty());
+}
+
+TEST(Peaks, AreFollowedToWhatTheyHaveBecome) {
+  const Oscillator before{3.0, 0.05}, after{3.05, 0.05};
+  const PeakRange range{1.0, 5.0, 17, {}};
+  const auto known = find_peaks(curves(before), range);
+  const auto peak = follow_peak(curves(after), range, known.at(0));
+  ASSERT_TRUE(peak);
+  EXPECT_NEAR(peak->at, after.peak(), 1e-8);
+  EXPECT_FALSE(follow_peak(curves([](double x) { return x; }), range, known.at(0)));
+}
+
+}  // namespace
+}  // namespace rubato::analysis
