@@ -23,6 +23,7 @@ struct RunOptions {
   int jobs = 0;                  ///< analyses at a time, and threads of a sweep; 0: one analysis, on all cores
   bool resume = false;           ///< go on where an interrupted run stopped
   bool yes = false;              ///< run sweeps of any size
+  bool vtk = false;              ///< also write the motion of structures for ParaView
   bool quiet = false;
   std::string command;  ///< as it was called, for the provenance
 };

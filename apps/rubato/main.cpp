@@ -94,7 +94,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1024).description(""));
   run->add_flag("--resume", run_options.resume, "go on where an interrupted sweep stopped");
   run->add_flag("--yes", run_options.yes, "run sweeps of more than a million points");
-  run->add_flag("-q,--quiet", run_options.quiet, "no progress, no messages but errors");
+  run->add_flag("--vtk", run_options.vtk, "also write the motion of structures for ParaView: DIR/vtk/ANALYSIS.pvd");
+  run->add_flag("-q,--quiet", run_options.quiet, "no progress; warnings and errors only");
 
   app::StudyOptions check_options;
   auto* check = cli.add_subcommand("check", "read and validate a study, and say what would run");

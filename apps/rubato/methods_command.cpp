@@ -69,7 +69,7 @@ int show_method(const std::string& name, const std::vector<std::string>& paramet
     values.emplace_back(text.substr(0, equals), value);
   }
   const bool lacks_values = needs_parameters(info) && values.empty();
-  if (csv && lacks_values) (void)integrate::make_method(name, values);  // says which are missing
+  if (csv || !lacks_values) (void)integrate::make_method(name, values);  // says what is wrong before anything is shown
   if (!csv) {
     fmt::print("{}\n\n{}\n\n", info.name, info.formula);
     fmt::print("order      {}\n", info.order == 0 ? "exact" : std::to_string(info.order));

@@ -10,6 +10,7 @@
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
 #include <rubato/report/write_report.hpp>
+#include <rubato/report/write_vtk.hpp>
 
 #include <fmt/format.h>
 
@@ -120,9 +121,11 @@ class Runner {
       for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
     for (const std::string& warning : report.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
+    const bool can_resume = report.status == RunStatus::interrupted && journals_[index];
     if (report.status != RunStatus::done)
-      tell(fmt::format("{}: analysis \"{}\" {}: {}", study_.description.file, task.name,
-                       report.status == RunStatus::failed ? "failed" : "stopped", report.message));
+      tell(fmt::format("{}: analysis \"{}\" {}: {}{}", study_.description.file, task.name,
+                       report.status == RunStatus::failed ? "failed" : "stopped", report.message,
+                       can_resume ? "; the same command with --resume goes on from there" : ""));
     return report;
   }
 
@@ -154,6 +157,20 @@ int conclude(const PreparedStudy& study, const std::vector<std::optional<RunRepo
   return status;
 }
 
+/// For ParaView. Returns false, and says why, where it was not written; the results are safe.
+bool write_motion(const std::filesystem::path& folder) {
+  try {
+    if (report::write_vtk(folder / "results.nc", folder / "vtk") == 0)
+      tell(
+          "--vtk: no analysis holds the motion of a whole structure (nodes, and all that is observed); nothing is "
+          "written");
+    return true;
+  } catch (const std::exception& fault) {
+    tell(fmt::format("error: the files for ParaView were not written: {}", fault.what()));
+    return false;
+  }
+}
+
 }  // namespace
 
 int run(const RunOptions& options) {
@@ -179,6 +196,7 @@ int run(const RunOptions& options) {
     std::fflush(nullptr);
     std::_Exit(exit_failed);
   }
+  if (options.vtk && !write_motion(folder) && status == exit_done) status = exit_failed;
   try {
     report::write_report(folder / "results.nc", folder / "report.html");
   } catch (const std::exception& fault) {  // the results are safe; only their picture is missing
@@ -190,9 +208,12 @@ int run(const RunOptions& options) {
 }
 
 int check(const StudyOptions& options) {
+  const auto counted = [](Index count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
   const PreparedStudy study = prepare(options);
-  fmt::print("{}\n  {} coordinates, {} sliders\n", study.description.title, study.system.size(),
-             study.system.slider_count());
+  fmt::print("{}\n  {}, {}\n", study.description.title, counted(study.system.size(), "coordinate"),
+             counted(study.system.slider_count(), "slider"));
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i)
     fmt::print("  {}: {}\n", study.analyses[i].name, study.outlines[i].summary);

@@ -6,6 +6,7 @@
 
 #include <rubato/analysis/frequency_response.hpp>
 #include <rubato/analysis/frequency_response_plan.hpp>
+#include <rubato/analysis/status_counts.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 
 #include <cmath>
@@ -362,6 +363,41 @@ TEST(FrequencyResponse, TiesThePreloadToTheSpeedAndCountsNegativeOnesAsZero) {
                           "pulled, and counts as 0 (1 point with negative loads)"));
 }
 
+// m v' + c v = 0.5 - 0.2 + ...: it slides at 0.6 m/s in the mean, 0.6 pi metres in a period of pi seconds.
+TEST(FrequencyResponse, SaysHowFarAStructureWalksOverItsSliders) {
+  const std::string text =
+      "[parameters]\nOmega = 2.0\n[[coordinate]]\nname = \"mass\"\nmass = 1.0\n"
+      "[[damper]]\nbetween = [\"mass\", \"ground\"]\ndamping = 0.5\n"
+      "[[slider]]\nname = \"contact\"\nbetween = [\"mass\", \"ground\"]\nstiffness = 10.0\n"
+      "friction_coefficient = 0.5\nnormal_load = 0.4\n"
+      "[[force]]\non = \"mass\"\namplitude = 0.1\nangular_frequency = \"Omega\"\n"
+      "[[force]]\non = \"mass\"\namplitude = 0.5\nangular_frequency = 0.0\n"
+      "[[analysis]]\nname = \"frf\"\ntype = \"frequency_response\"\nangular_frequency = [2.0]\n";
+  const auto result = run(PreparedStudy(text), steady_solvers({}));
+  EXPECT_EQ(status_words()[static_cast<std::size_t>(result->at(0, "status"))], "drifting");
+  EXPECT_NEAR(result->at(0, "input_work"), result->at(0, "viscous_work") + result->at(0, "dissipated", "contact"),
+              1e-10);
+  EXPECT_THAT(
+      result->report.warnings,
+      ElementsAre("at angular_frequency = 2 rad/s the structure walks over its sliders, \"mass\" by 1.88496 m a "
+                  "period, and has no steady place; only a spring would give it one (1 point)"));
+}
+
+// Without damping nothing ends what begins at rest: (cos t - cos 2t) / 3 repeats after two periods of the force,
+// between 1.125 / 3 at cos t = 1/4 and -2 / 3.
+TEST(FrequencyResponse, CallsAnUndampedStartThatRepeatsAfterTwoPeriodsSubharmonic) {
+  const std::string text =
+      "[parameters]\nOmega = 2.0\n[[coordinate]]\nname = \"mass\"\nmass = 1.0\n"
+      "[[spring]]\nbetween = [\"mass\", \"ground\"]\nstiffness = 1.0\n"
+      "[[force]]\non = \"mass\"\namplitude = 1.0\nangular_frequency = \"Omega\"\n"
+      "[[analysis]]\nname = \"frf\"\ntype = \"frequency_response\"\nangular_frequency = [2.0]\n"
+      "solver = \"time_marching\"\nmethod = \"exponential\"\nstart = \"rest\"\n";
+  const PreparedStudy prepared(text);
+  const auto result = run(prepared, steady_solvers(plan_of(prepared).route));
+  EXPECT_EQ(status_words()[static_cast<std::size_t>(result->at(0, "status"))], "subharmonic");
+  EXPECT_NEAR(result->at(0, "amplitude", "mass"), 3.125 / 6.0, 1e-3);
+}
+
 TEST(FrequencyResponse, CallsAResonanceWithoutDampingInfinite) {
   const std::string text =
       "[parameters]\nOmega = 1.0\n[[coordinate]]\nname = \"mass\"\nmass = 1.0\n"
@@ -386,9 +422,10 @@ TEST(FrequencyResponse, GoesOnPastCombinationsThatNoModelCanHave) {
   EXPECT_TRUE(std::isnan(result->at(2, "amplitude", "mass")));
   EXPECT_EQ(result->at(4, "status"), 0.0);
   ASSERT_EQ(result->report.warnings.size(), 1u);
-  EXPECT_EQ(result->report.warnings[0],
-            "at k = -1, angular_frequency = 1 rad/s there is no model (2 points): study.toml:10:13: error: the spring "
-            "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
+  EXPECT_EQ(
+      result->report.warnings[0],
+      "at k = -1, angular_frequency = 1 rad/s nothing can be computed (2 points): study.toml:10:13: error: the spring "
+      "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
 }
 
 }  // namespace

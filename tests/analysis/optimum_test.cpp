@@ -68,6 +68,21 @@ TEST(Optimum, MayBeTheHighestOfTheCurve) {
   EXPECT_NEAR(found->curvature, -1.0, 1e-3);
 }
 
+// One peak falls steeply, the other hardly rises: wherever among the samples they cross, the search ends beside the
+// crossing, and must see it.
+TEST(Optimum, OfTwoPeaksOfUnequalSlopesIsTheirCrossing) {
+  for (int i = 0; i < 25; ++i) {
+    const double at = 2.0 + 0.0137 * i;
+    Bells bells({{[&](double p) { return 1.0 + 1e-3 * (p - at); }, [](double) { return 3.3; }},
+                 {[&](double p) { return 1.0 - 0.1 * (p - at); }, [](double) { return 1.7; }}});
+    const auto found = bells.optimum(0.7, 4.9, 9);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->kind, Optimum::Kind::kink) << at;
+    EXPECT_NEAR(found->parameter, at, 1e-7);
+    EXPECT_NEAR(found->active.front().value, 1.0, 1e-9);
+  }
+}
+
 // Heights p and 8/p^2 are equal at p = 2, with the derivatives 1 and -2: these vanish in the sum with weights 2/3 and
 // 1/3.
 TEST(Optimum, OfTwoEqualPeaksHasMultipliersThatWeighTheirDerivativesToZero) {

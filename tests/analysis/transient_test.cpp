@@ -1,10 +1,12 @@
 #include <rubato/analysis/transient.hpp>
+#include <rubato/system/assemble.hpp>
 
 #include "support/memory_sink.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <string>
@@ -107,6 +109,51 @@ TEST(Transient, InterpolatesBetweenStepsAboveTheOrderOfTheMethod) {
     ASSERT_NEAR(a[i], b[i], 2e-7) << i;
     ASSERT_NEAR(va[i], vb[i], 5e-7) << i;
   }
+}
+
+// The exponential step is exact at its ends, so that samples between them err by the interpolation alone: by h^4 in
+// displacement, velocity and acceleration. The first two steps have fewer ends to go through.
+TEST(Transient, InterpolatesMotionAndAccelerationWithFourthOrder) {
+  const auto system = testing::single_mass();
+  const auto error_at = [&](double h) {
+    auto d = description("exponential", h, 10.0);
+    d.output.kind = Kind::interval;
+    d.output.interval = h / 4.0;
+    const Recorded between = run(system, d), exact = run(system, description("exponential", h / 4.0, 10.0));
+    std::array<double, 3> errors{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const char* quantity = std::array{"position", "velocity", "acceleration"}[k];
+      const auto a = between.column(quantity, "mass"), b = exact.column(quantity, "mass");
+      EXPECT_EQ(a.size(), b.size());
+      for (std::size_t i = 8; i < a.size(); ++i) errors[k] = std::max(errors[k], std::abs(a[i] - b[i]));
+    }
+    return errors;
+  };
+  const auto coarse = error_at(0.1), fine = error_at(0.05);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(std::log2(coarse[k] / fine[k]), 4.0, 0.3) << k;
+}
+
+// A fast mode that the step passes over (omega h = 50) alternates from step to step. Between steps it may be anything
+// of its size; a polynomial through velocities would make it ten times larger.
+TEST(Transient, KeepsFastModesWithinTheirSizeBetweenSteps) {
+  model::ModelDescription description_of;
+  description_of.coordinates = {{"slow", 1.0, 1.0, 0.0, {}}, {"fast", 1.0, 1e-3, 0.0, {}}};
+  model::SpringDescription soft, stiff;
+  soft.between = {"slow", "ground"};
+  soft.stiffness = 1.0;
+  stiff.between = {"fast", "ground"};
+  stiff.stiffness = 1e6;
+  description_of.springs = {soft, stiff};
+  const auto system = system::assemble(model::build(description_of, {}));
+  auto d = description("average_acceleration", 0.05, 2.0);
+  d.output.kind = Kind::interval;
+  d.output.interval = 0.01;
+  const Recorded result = run(system, d);
+  for (const double q : result.column("position", "fast")) ASSERT_LE(std::abs(q), 1.7e-3);
+  for (const double v : result.column("velocity", "fast")) ASSERT_LE(std::abs(v), 1.7);
+  for (const double a : result.column("acceleration", "fast")) ASSERT_LE(std::abs(a), 1.7e3);
+  // 0.5 J swing in the fast mode; 1.7 is squared.
+  for (const double r : result.column("residue", "", "run.energy")) ASSERT_LE(std::abs(r), 3.0 * 0.5);
 }
 
 TEST(Transient, WritesTheRequestedTimesOnly) {

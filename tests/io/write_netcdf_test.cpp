@@ -306,7 +306,7 @@ TEST_F(WriteNetcdf, AFolderWithoutRoomForTheResultsIsRefusedAtOnce) {
     prepare_output_folder(folder_, 2.0 * available + 1e9);
     FAIL() << "twice the free space was accepted";
   } catch (const OutputError& fault) {
-    EXPECT_THAT(fault.what(), HasSubstr("the results will take about"));
+    EXPECT_THAT(fault.what(), HasSubstr("the results may take"));
   }
   EXPECT_TRUE(has_disk_space(path(), 0.0));
   EXPECT_FALSE(has_disk_space(path(), 2.0 * available + 1e9));

@@ -2,6 +2,7 @@
 
 #include "report/sample_responses.hpp"
 #include "report/sample_results.hpp"
+#include "report/sample_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -248,6 +249,7 @@ void write_sample_results(const std::filesystem::path& file) {
   add_random_sweep(sink);
   add_damper_curve(sink);
   add_modes(sink);
+  add_scene(sink);
 
   const std::string hostile = "bl\"ade</script><b>\xCE\xA9";
   results::TableLayout unknown{"unknown", "", "angular_frequency", {column("angular_frequency", "rad/s")}, {}};

@@ -105,8 +105,8 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
     const auto stepper = integrate::make_stepper(method, system);
     const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
     estimator->start(integrate::consistent_start(system, start));
-    const double first = plan.first > 0.0 ? plan.first : std::min(plan.largest, estimator->first_step());
-    step.expected_steps = std::ceil(duration / first);
+    const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
+    step.expected_steps = std::ceil(duration / (is_fixed ? plan.first : plan.largest));
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }
@@ -147,13 +147,11 @@ std::string summary(const AutomaticStep& step) {
 }
 
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length) {
-  std::vector<std::pair<std::string, std::string>> all{{"steps", std::to_string(report.march.steps)},
-                                                       {"rejected", std::to_string(report.rejected)},
-                                                       {"failed", std::to_string(report.failed)},
-                                                       {"events", std::to_string(report.events)},
-                                                       {"restarts", std::to_string(report.restarts)},
-                                                       {"solves", std::to_string(report.solves)},
-                                                       {"factorisations", std::to_string(report.factorisations)}};
+  std::vector<std::pair<std::string, std::string>> all{
+      {"steps", std::to_string(report.march.steps)},       {"rejected", std::to_string(report.rejected)},
+      {"failed", std::to_string(report.failed)},           {"events", std::to_string(report.events)},
+      {"event_tries", std::to_string(report.event_tries)}, {"restarts", std::to_string(report.restarts)},
+      {"solves", std::to_string(report.solves)},           {"factorisations", std::to_string(report.factorisations)}};
   if (report.march.steps > 0) {
     all.emplace_back("smallest_step", fmt::format("{:.6g} s", report.smallest_step));
     all.emplace_back("mean_step", fmt::format("{:.6g} s", length / static_cast<double>(report.march.steps)));

@@ -16,7 +16,7 @@ struct AutomaticStep {
   integrate::StepPlan plan;
   integrate::EstimatorKind estimator;
   double tolerance = 1e-3;
-  double expected_steps = 0.0;  ///< from the first step: for progress and the size of files
+  double expected_steps = 0.0;  ///< at least: what the largest step takes; for the size of files
 };
 
 /// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator

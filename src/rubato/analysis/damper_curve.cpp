@@ -39,10 +39,15 @@ class Tables {
     append(peaks_.get(), result.peaks, layouts_.peaks());
     append(optimum_.get(), result.optimum, layouts_.optimum());
     if (!result.optimum.empty()) {
-      const double at = result.optimum[plan_.sweep.names().size()];
-      lowest_ = std::min(lowest_, at);
-      highest_ = std::max(highest_, at);
       last_optimum_ = result.optimum;
+      ++optima_;
+      if (static_cast<Optimum::Kind>(of_optimum("kind")) == Optimum::Kind::flat) {
+        ++flat_;
+      } else {
+        const double at = result.optimum[plan_.sweep.names().size()];
+        lowest_ = std::min(lowest_, at);
+        highest_ = std::max(highest_, at);
+      }
     }
     counts_.add(result.counts);
     if (!bands_) return;
@@ -73,9 +78,13 @@ class Tables {
     if (last_optimum_.empty()) return {};
     const bool is_amplitude = plan_.objective == DamperCurvePlan::Objective::amplitude;
     const std::string what = is_amplitude ? "lowest amplitude" : "largest friction work";
-    if (plan_.sweep.lines() > 1)
-      return fmt::format("{} at {} = {:.7g} to {:.7g}, over {} combinations", what, plan_.parameter, lowest_, highest_,
-                         plan_.sweep.lines());
+    if (plan_.sweep.lines() > 1) {
+      const std::string flat = flat_ == 0 ? "" : fmt::format("; {} do not depend on it there", flat_);
+      if (flat_ == optima_)
+        return fmt::format("{}: none of {} combinations depends on {}", what, optima_, plan_.parameter);
+      return fmt::format("{} at {} = {:.7g} to {:.7g}, over {} combinations{}", what, plan_.parameter, lowest_,
+                         highest_, optima_, flat);
+    }
     const std::size_t at = plan_.sweep.names().size();
     const double frequency = last_optimum_[at + 1], objective = last_optimum_[layouts_.objective()];
     return fmt::format("{} {:.9g} {} at {} = {:.9g}, angular_frequency = {:.9g} rad/s{}", what, objective,
@@ -132,6 +141,7 @@ class Tables {
   std::vector<std::vector<double>> objectives_;  ///< of random samples, by value of the parameter
   std::vector<double> last_optimum_;
   double lowest_ = HUGE_VAL, highest_ = -HUGE_VAL;
+  long optima_ = 0, flat_ = 0;
 };
 
 std::string values_text(double count) { return fmt::format("{:.0f} value{}", count, count == 1.0 ? "" : "s"); }
@@ -143,27 +153,30 @@ class Warnings {
 
   std::vector<std::string> all() {
     std::vector<std::string> warnings;
-    const auto count = [&](PointStatus status) { return counts_.by_status[static_cast<std::size_t>(status)]; };
-    if (counts_.negative_loads > 0.0) {
-      const auto scan = scan_of(counts_.first_negative);
+    if (const Tally& negative = counts_.negative_loads; negative.count > 0.0) {
+      const auto scan = scan_of(negative.first);
       warnings.push_back(
           fmt::format("at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and "
                       "counts as 0 ({} with negative loads)",
-                      place_of(counts_.first_negative), input_.study.model.sliders[scan.negative_slider].name,
-                      scan.negative_load, values_text(counts_.negative_loads)));
+                      place_of(negative.first), input_.study.model.sliders[scan.negative_slider].name,
+                      scan.negative_load, values_text(negative.count)));
     }
-    if (counts_.at_ends > 0.0)
+    if (counts_.at_ends.count > 0.0)
       warnings.push_back(fmt::format("at {} the largest lies at an end of the frequencies ({}); widen them",
-                                     place_of(counts_.first_end), values_text(counts_.at_ends)));
-    if (count(PointStatus::unbounded) > 0.0)
+                                     place_of(counts_.at_ends.first), values_text(counts_.at_ends.count)));
+    if (const Tally& unbounded = counts_.of(PointStatus::unbounded); unbounded.count > 0.0)
       warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
-                                     place_of(counts_.first_unbounded), values_text(count(PointStatus::unbounded))));
-    if (count(PointStatus::impossible) > 0.0)
-      warnings.push_back(fmt::format("at {} there is no model ({}): {}", place_of(counts_.first_impossible),
-                                     values_text(count(PointStatus::impossible)),
-                                     scan_of(counts_.first_impossible).reason));
-    if (count(PointStatus::not_converged) > 0.0)
-      warnings.push_back(fmt::format("{} did not converge", values_text(count(PointStatus::not_converged))));
+                                     place_of(unbounded.first), values_text(unbounded.count)));
+    if (counts_.walks.count > 0.0)
+      warnings.push_back(
+          fmt::format("at {} and some frequencies the structure walks over its sliders, and has no "
+                      "steady place; they are left out ({})",
+                      place_of(counts_.walks.first), values_text(counts_.walks.count)));
+    if (const Tally& impossible = counts_.of(PointStatus::impossible); impossible.count > 0.0)
+      warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(impossible.first),
+                                     values_text(impossible.count), scan_of(impossible.first).reason));
+    if (const Tally& lost = counts_.of(PointStatus::not_converged); lost.count > 0.0)
+      warnings.push_back(fmt::format("at {} nothing converged ({})", place_of(lost.first), values_text(lost.count)));
     if (counts_.unconverged_samples > 0.0)
       warnings.push_back(fmt::format("{:.0f} of {:.0f} points solved did not converge: a peak may have been missed",
                                      counts_.unconverged_samples, counts_.solves));
@@ -234,6 +247,7 @@ class Lines {
     if (stop_.load()) {
       result.is_whole = false;
       result.optimum.clear();
+      result.counts.without_optimum = 0.0;  // nobody has looked for it
     }
     return result;
   }
@@ -269,7 +283,7 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   for (long i = 0; i < known; ++i) {
     const DamperLineResult result = DamperLineResult::unpacked(context.journal->read(i));
     tables.write(result);
-    progress.add(static_cast<long>(result.counts.values()));
+    progress.add(static_cast<long>(result.counts.total()));
   }
 
   const int cores = tbb::info::default_concurrency();
@@ -298,24 +312,21 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   });
   tables.finish();
   const DamperCurveCounts& counts = tables.counts();
-  context.progress.advance(counts.values());
+  context.progress.advance(counts.total());
   context.progress.end();
 
   RunReport report;
-  const double lost = counts.by_status[static_cast<std::size_t>(PointStatus::not_converged)] +
-                      counts.by_status[static_cast<std::size_t>(PointStatus::impossible)];
-  if (was_interrupted || counts.values() < plan.points()) {
+  const double lost = counts.of(PointStatus::not_converged).count + counts.of(PointStatus::impossible).count;
+  if (was_interrupted || counts.total() < plan.points()) {
     report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted after {:.0f} of {:.0f} values", counts.values(), plan.points());
-  } else if (lost == counts.values()) {
+    report.message = fmt::format("interrupted after {:.0f} of {:.0f} values", counts.total(), plan.points());
+  } else if (lost == counts.total()) {
     report.status = RunStatus::failed;
     report.message = "no value has a peak; the warnings and the column `status` say why";
   }
-  report.statistics = {{"values", fmt::format("{:.0f}", counts.values())},
+  report.statistics = {{"values", fmt::format("{:.0f}", counts.total())},
                        {"points_solved", fmt::format("{:.0f}", counts.solves)}};
-  for (std::size_t i = 0; i < point_statuses; ++i)
-    if (i == 0 || counts.by_status[i] > 0.0)
-      report.statistics.emplace_back(status_words()[i], fmt::format("{:.0f}", counts.by_status[i]));
+  counts.describe(report.statistics);
   const std::atomic<bool> never{false};  // an interrupt must not keep it from saying what was found
   DamperPeaks witness(plan, input, solvers, never);
   report.warnings = Warnings(plan, input, counts, witness).all();

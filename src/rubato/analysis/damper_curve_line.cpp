@@ -54,54 +54,32 @@ class PeakNumbers {
 };
 
 void count_value(const DamperValue& value, double number, DamperCurveCounts& counts) {
-  const auto note = [&](double& first) {
-    if (first < 0.0) first = number;
-  };
-  counts.by_status[place(value.status)] += 1.0;
+  counts.of(value.status).note(number);
   counts.unconverged_samples += static_cast<double>(value.scan.by_status[place(PointStatus::not_converged)]);
   for (const long samples : value.scan.by_status) counts.solves += static_cast<double>(samples);
-  if (value.status == PointStatus::unbounded) note(counts.first_unbounded);
-  if (value.status == PointStatus::impossible) note(counts.first_impossible);
-  if (value.scan.has_negative_load) {
-    counts.negative_loads += 1.0;
-    note(counts.first_negative);
-  }
+  if (value.scan.has_negative_load) counts.negative_loads.note(number);
+  if (value.scan.by_status[place(PointStatus::drifting)] > 0) counts.walks.note(number);
   if (value.status == PointStatus::converged && value.peaks.front().kind != Peak::Kind::interior &&
-      value.peaks.front().value > 0.0) {
-    counts.at_ends += 1.0;
-    note(counts.first_end);
-  }
+      value.peaks.front().value > 0.0)
+    counts.at_ends.note(number);
 }
 
 }  // namespace
 
 void DamperCurveCounts::add(const DamperCurveCounts& other) {
-  for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i] += other.by_status[i];
+  StatusCounts::add(other);
   solves += other.solves;
   unconverged_samples += other.unconverged_samples;
-  at_ends += other.at_ends;
-  negative_loads += other.negative_loads;
   without_optimum += other.without_optimum;
-  const auto first = [](double& mine, double theirs) {
-    if (theirs >= 0.0 && (mine < 0.0 || theirs < mine)) mine = theirs;
-  };
-  first(first_end, other.first_end);
-  first(first_negative, other.first_negative);
-  first(first_unbounded, other.first_unbounded);
-  first(first_impossible, other.first_impossible);
-}
-
-double DamperCurveCounts::values() const {
-  double sum = 0.0;
-  for (const double count : by_status) sum += count;
-  return sum;
+  at_ends.add(other.at_ends);
+  walks.add(other.walks);
 }
 
 std::vector<double> DamperLineResult::packed() const {
-  std::vector<double> values(counts.by_status.begin(), counts.by_status.end());
-  values.insert(values.end(), {counts.solves, counts.unconverged_samples, counts.at_ends, counts.negative_loads,
-                               counts.without_optimum, counts.first_end, counts.first_negative, counts.first_unbounded,
-                               counts.first_impossible});
+  std::vector<double> values;
+  counts.pack(values);
+  values.insert(values.end(), {counts.solves, counts.unconverged_samples, counts.without_optimum, counts.at_ends.count,
+                               counts.at_ends.first, counts.walks.count, counts.walks.first});
   for (const auto* rows : {&main, &linear, &peaks, &optimum}) {
     values.push_back(static_cast<double>(rows->size()));
     values.insert(values.end(), rows->begin(), rows->end());
@@ -113,10 +91,9 @@ DamperLineResult DamperLineResult::unpacked(std::span<const double> values) {
   DamperLineResult result;
   std::size_t at = 0;
   DamperCurveCounts& counts = result.counts;
-  for (double& count : counts.by_status) count = values[at++];
-  for (double* value :
-       {&counts.solves, &counts.unconverged_samples, &counts.at_ends, &counts.negative_loads, &counts.without_optimum,
-        &counts.first_end, &counts.first_negative, &counts.first_unbounded, &counts.first_impossible})
+  counts.unpack(values, at);
+  for (double* value : {&counts.solves, &counts.unconverged_samples, &counts.without_optimum, &counts.at_ends.count,
+                        &counts.at_ends.first, &counts.walks.count, &counts.walks.first})
     *value = values[at++];
   for (auto* rows : {&result.main, &result.linear, &result.peaks, &result.optimum}) {
     const auto size = static_cast<std::size_t>(values[at++]);
@@ -143,6 +120,8 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
   } else if (!value.peaks.empty()) {
     value.response = family.response_at(parameter, value.peaks.front().at);
     value.status = point_status(value.response.status);
+  } else if (count(PointStatus::drifting) > 0) {
+    value.status = PointStatus::drifting;
   } else if (count(PointStatus::impossible) > 0) {
     value.status = PointStatus::impossible;
   }

@@ -11,19 +11,15 @@
 
 namespace rubato::analysis {
 
-/// What is to be said of the values of a curve, and the first value that it is to be said of.
-struct DamperCurveCounts {
-  std::array<double, point_statuses> by_status{};
+/// What is to be said of the values of a curve, which are numbered over all lines.
+struct DamperCurveCounts : StatusCounts {
   double solves = 0.0;
   double unconverged_samples = 0.0;  ///< of scans
-  double at_ends = 0.0;              ///< values whose largest objective lies at an end of the frequencies
-  double negative_loads = 0.0;       ///< values with negative normal loads
   double without_optimum = 0.0;      ///< lines
-  /// Numbers of values, counted over all lines; -1: none.
-  double first_end = -1.0, first_negative = -1.0, first_unbounded = -1.0, first_impossible = -1.0;
+  Tally at_ends;                     ///< values whose largest objective lies at an end of the frequencies
+  Tally walks;                       ///< values at which the structure drifts at some frequencies
 
   void add(const DamperCurveCounts& other);
-  double values() const;
 };
 
 /// The rows of one line of the sweep, table by table.

@@ -124,7 +124,7 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
             {"solver", "periodic"},
             {"parameter", plan.parameter},
             {"objective", objective},
-            {"excitation", input.parameters[plan.excitation].first},
+            {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
             {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
             {"lines", std::to_string(plan.sweep.lines())}}};
 

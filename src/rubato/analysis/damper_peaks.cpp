@@ -13,6 +13,9 @@ std::vector<std::size_t> line_places(const DamperCurvePlan& plan) {
   return places;
 }
 
+/// With its place where it has one.
+std::string reason_of(const InvalidInput& fault) { return fault.where().file.empty() ? fault.message() : fault.what(); }
+
 /// Natural frequencies without sliders and with all of them stuck [rad/s].
 Vector natural_frequencies(const system::LocallyNonlinear& system) {
   const Vector free = numerics::all_modes(system.stiffness(), system.mass()).eigenvalues;
@@ -67,7 +70,7 @@ bool DamperPeaks::take(double parameter, bool begins_afresh) {
     return true;
   } catch (const InvalidInput& fault) {
     ++scan_.by_status[static_cast<std::size_t>(PointStatus::impossible)];
-    if (scan_.reason.empty()) scan_.reason = fault.what();
+    if (scan_.reason.empty()) scan_.reason = reason_of(fault);
     return false;
   }
 }
@@ -83,7 +86,7 @@ bool DamperPeaks::take_point(double angular_frequency) {
     drive_.take_point(point, excitation_);
   } catch (const InvalidInput& fault) {
     ++scan_.by_status[static_cast<std::size_t>(PointStatus::impossible)];
-    if (scan_.reason.empty()) scan_.reason = fault.what();
+    if (scan_.reason.empty()) scan_.reason = reason_of(fault);
     return false;
   }
   if (!scan_.has_negative_load && !drive_.negative_loads().empty()) {

@@ -119,37 +119,55 @@ std::string place_of(const FrequencyResponsePlan& plan, double point) {
 
 std::string points_text(double count) { return fmt::format("{:.0f} point{}", count, count == 1.0 ? "" : "s"); }
 
+/// ", "damper" by 0.12 m a period": of what is observed, that which goes farthest.
+std::string drift_text(const FrequencyResponsePlan& plan, const Vector& drift) {
+  if (drift.size() == 0) return {};
+  Index farthest = 0;
+  const double distance = drift.cwiseAbs().maxCoeff(&farthest);
+  const Observed& what = plan.observed[static_cast<std::size_t>(farthest)];
+  return distance > 0.0
+             ? fmt::format(", \"{}\" by {:.6g} {} a period", what.label, distance, what.is_rotation ? "rad" : "m")
+             : std::string();
+}
+
 std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const StudyInput& input,
                                      const SweepCounts& counts, PieceSolver& solver) {
   std::vector<std::string> warnings;
-  const auto count = [&](PointStatus status) { return counts.by_status[static_cast<std::size_t>(status)]; };
   const auto split = [&](double point) {
     const auto line = static_cast<long>(point / static_cast<double>(plan.steps.size()));
     return std::pair(
         line, static_cast<std::size_t>(point - static_cast<double>(line) * static_cast<double>(plan.steps.size())));
   };
-  if (counts.negative_loads > 0.0) {
-    const auto [line, step] = split(counts.first_negative);
+  if (const Tally& negative = counts.negative_loads; negative.count > 0.0) {
+    const auto [line, step] = split(negative.first);
     for (const auto& [slider, load] : solver.negative_loads(line, step)) {
-      warnings.push_back(
-          fmt::format("at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and counts "
-                      "as 0 ({} with negative loads)",
-                      place_of(plan, counts.first_negative), input.study.model.sliders[slider].name, load,
-                      points_text(counts.negative_loads)));
+      warnings.push_back(fmt::format(
+          "at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and counts "
+          "as 0 ({} with negative loads)",
+          place_of(plan, negative.first), input.study.model.sliders[slider].name, load, points_text(negative.count)));
       break;
     }
   }
-  if (count(PointStatus::unbounded) > 0.0)
+  if (const Tally& unbounded = counts.of(PointStatus::unbounded); unbounded.count > 0.0)
     warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
-                                   place_of(plan, counts.first_unbounded), points_text(count(PointStatus::unbounded))));
-  if (count(PointStatus::impossible) > 0.0) {
-    const auto [line, step] = split(counts.first_impossible);
-    warnings.push_back(fmt::format("at {} there is no model ({}): {}", place_of(plan, counts.first_impossible),
-                                   points_text(count(PointStatus::impossible)), solver.reason(line, step)));
+                                   place_of(plan, unbounded.first), points_text(unbounded.count)));
+  if (const Tally& drifting = counts.of(PointStatus::drifting); drifting.count > 0.0) {
+    const auto [line, step] = split(drifting.first);
+    warnings.push_back(fmt::format(
+        "at {} the structure walks over its sliders{}, and has no steady place; only a "
+        "spring would give it one ({})",
+        place_of(plan, drifting.first), drift_text(plan, solver.drift(line, step)), points_text(drifting.count)));
   }
-  if (count(PointStatus::not_converged) > 0.0)
-    warnings.push_back(fmt::format("{} did not converge; their rows hold the best that was found",
-                                   points_text(count(PointStatus::not_converged))));
+  if (const Tally& impossible = counts.of(PointStatus::impossible); impossible.count > 0.0) {
+    const auto [line, step] = split(impossible.first);
+    warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(plan, impossible.first),
+                                   points_text(impossible.count), solver.reason(line, step)));
+  }
+  if (const Tally& lost = counts.of(PointStatus::not_converged); lost.count > 0.0)
+    warnings.push_back(
+        fmt::format("at {} the solution did not converge ({}): the rows hold the best that was found; try another "
+                    "solver = ..., or a looser tolerance",
+                    place_of(plan, lost.first), points_text(lost.count)));
   return warnings;
 }
 
@@ -176,7 +194,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
     if (!piece) break;
     const PieceResult result = PieceResult::unpacked(*piece, context.journal->read(i));
     tables.write(result);
-    progress.add(static_cast<long>(result.counts.points()));
+    progress.add(static_cast<long>(result.counts.total()));
   }
 
   const int cores = tbb::info::default_concurrency();
@@ -207,23 +225,20 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
   });
   tables.finish();
   const SweepCounts& counts = tables.counts();
-  context.progress.advance(counts.points());
+  context.progress.advance(counts.total());
   context.progress.end();
 
   RunReport report;
-  if (counts.points() < plan.points()) {
+  if (counts.total() < plan.points()) {
     report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted after {:.0f} of {:.0f} points", counts.points(), plan.points());
-  } else if (const double lost = counts.by_status[static_cast<std::size_t>(PointStatus::not_converged)] +
-                                 counts.by_status[static_cast<std::size_t>(PointStatus::impossible)];
-             lost == counts.points()) {
+    report.message = fmt::format("interrupted after {:.0f} of {:.0f} points", counts.total(), plan.points());
+  } else if (const double lost = counts.of(PointStatus::not_converged).count + counts.of(PointStatus::impossible).count;
+             lost == counts.total()) {
     report.status = RunStatus::failed;
     report.message = "no point was solved; the warnings and the column `status` say why";
   }
-  report.statistics = {{"points", fmt::format("{:.0f}", counts.points())}};
-  for (std::size_t i = 0; i < point_statuses; ++i)
-    if (i == 0 || counts.by_status[i] > 0.0)
-      report.statistics.emplace_back(status_words()[i], fmt::format("{:.0f}", counts.by_status[i]));
+  report.statistics = {{"points", fmt::format("{:.0f}", counts.total())}};
+  counts.describe(report.statistics);
   report.statistics.emplace_back("iterations", fmt::format("{:.0f}", counts.iterations));
   report.warnings = warnings_of(plan, input, counts, worker());
   return report;

@@ -13,28 +13,15 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 void SweepCounts::add(const SweepCounts& other) {
-  for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i] += other.by_status[i];
+  StatusCounts::add(other);
   iterations += other.iterations;
-  negative_loads += other.negative_loads;
-  const auto first = [](double& mine, double theirs) {
-    if (theirs >= 0.0 && (mine < 0.0 || theirs < mine)) mine = theirs;
-  };
-  first(first_negative, other.first_negative);
-  first(first_unbounded, other.first_unbounded);
-  first(first_impossible, other.first_impossible);
-}
-
-double SweepCounts::points() const {
-  double sum = 0.0;
-  for (const double count : by_status) sum += count;
-  return sum;
 }
 
 std::vector<double> PieceResult::packed() const {
-  std::vector<double> values(counts.by_status.begin(), counts.by_status.end());
-  values.insert(values.end(), {counts.iterations, counts.negative_loads, counts.first_negative, counts.first_unbounded,
-                               counts.first_impossible, static_cast<double>(main.size()),
-                               static_cast<double>(linear.size()), static_cast<double>(waveforms.size())});
+  std::vector<double> values;
+  counts.pack(values);
+  values.insert(values.end(), {counts.iterations, static_cast<double>(main.size()), static_cast<double>(linear.size()),
+                               static_cast<double>(waveforms.size())});
   for (const auto* rows : {&main, &linear, &waveforms}) values.insert(values.end(), rows->begin(), rows->end());
   return values;
 }
@@ -44,10 +31,8 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const doubl
   result.piece = piece;
   std::size_t place = 0;
   const auto next = [&] { return values[place++]; };
-  for (double& count : result.counts.by_status) count = next();
-  for (double* value : {&result.counts.iterations, &result.counts.negative_loads, &result.counts.first_negative,
-                        &result.counts.first_unbounded, &result.counts.first_impossible})
-    *value = next();
+  result.counts.unpack(values, place);
+  result.counts.iterations = next();
   std::array<std::size_t, 3> sizes{};
   for (std::size_t& size : sizes) size = static_cast<std::size_t>(next());
   const std::array<std::vector<double>*, 3> tables{&result.main, &result.linear, &result.waveforms};
@@ -146,15 +131,10 @@ void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, co
   const RowPlace place = place_of(lane, step);
   tables_.main.add(place, excitation.angular_frequency, response, result.main);
   SweepCounts& counts = result.counts;
-  const PointStatus status = point_status(response.status);
-  counts.by_status[static_cast<std::size_t>(status)] += 1.0;
+  const double number = point_number(line, step);
+  counts.of(point_status(response.status)).note(number);
   counts.iterations += response.iterations;
-  if (status == PointStatus::unbounded && counts.first_unbounded < 0.0)
-    counts.first_unbounded = point_number(line, step);
-  if (!lane.drive->negative_loads().empty()) {
-    counts.negative_loads += 1.0;
-    if (counts.first_negative < 0.0) counts.first_negative = point_number(line, step);
-  }
+  if (!lane.drive->negative_loads().empty()) counts.negative_loads.note(number);
   // Both directions have the same limits.
   if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
     solve_linear(place, excitation, result);
@@ -187,8 +167,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
         march_without_period(mine, point, response);
     } catch (const InvalidInput&) {
       tables_.main.add_impossible(place_of(mine, step), result.main);
-      result.counts.by_status[static_cast<std::size_t>(PointStatus::impossible)] += 1.0;
-      if (result.counts.first_impossible < 0.0) result.counts.first_impossible = point_number(piece.first_line, step);
+      result.counts.of(PointStatus::impossible).note(point_number(piece.first_line, step));
       progress_.add(1);
       continue;
     }
@@ -226,7 +205,7 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
     }
   } catch (const InvalidInput&) {
     double points = 0.0;
-    for (std::size_t i = 0; i < count; ++i) points += lanes_[i].result.counts.points();
+    for (std::size_t i = 0; i < count; ++i) points += lanes_[i].result.counts.total();
     progress_.add(-static_cast<long>(points));
     return false;
   }
@@ -275,9 +254,16 @@ std::string PieceSolver::reason(long line, std::size_t step) {
     solver_->forget();
     solver_->solve(excitations_[0], plan_.start, responses_[0]);
   } catch (const InvalidInput& fault) {
-    return fault.what();
+    return fault.where().file.empty() ? fault.message() : fault.what();
   }
   return {};
+}
+
+Vector PieceSolver::drift(long line, std::size_t step) {
+  (void)take_point(line, step);
+  solver_->forget();
+  solver_->solve(excitations_[0], plan_.start, responses_[0]);
+  return responses_[0].drift;
 }
 
 std::vector<ParametricExcitation::NegativeLoad> PieceSolver::negative_loads(long line, std::size_t step) {

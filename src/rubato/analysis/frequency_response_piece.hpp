@@ -20,15 +20,11 @@ struct SweepPiece {
   std::size_t first_step = 0, steps = 0;
 };
 
-/// What was counted over points, and the first point that something is to be said of (-1: none).
-struct SweepCounts {
-  std::array<double, point_statuses> by_status{};
+/// What was counted over points, which are numbered line by line.
+struct SweepCounts : StatusCounts {
   double iterations = 0.0;
-  double negative_loads = 0.0;  ///< points with a negative normal load
-  double first_negative = -1.0, first_unbounded = -1.0, first_impossible = -1.0;  ///< the point's number
 
   void add(const SweepCounts& other);
-  double points() const;
 };
 
 /// Rows of a piece, table by table, in the order of lines and steps.
@@ -86,6 +82,8 @@ class PieceSolver {
   std::string reason(long line, std::size_t step);
   /// The sliders with a negative load at a point.
   std::vector<ParametricExcitation::NegativeLoad> negative_loads(long line, std::size_t step);
+  /// How far what is observed drifts in a period at a point; empty where it does not [o] [m].
+  Vector drift(long line, std::size_t step);
 
  private:
   struct Lane {

@@ -66,14 +66,15 @@ std::string sweep_name(Sweep::Kind kind) {
 }
 
 Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& input) {
-  Attributes attributes{{"type", "frequency_response"},
-                        {"solver", route_name(plan.route.kind)},
-                        {"start", start_name(plan.start)},
-                        {"excitation", input.parameters[plan.excitation].first},
-                        {"sweep", sweep_name(plan.sweep.kind())},
-                        {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
-                        {"frequencies", std::to_string(plan.frequencies.size())},
-                        {"lines", std::to_string(plan.sweep.lines())}};
+  Attributes attributes{
+      {"type", "frequency_response"},
+      {"solver", route_name(plan.route.kind)},
+      {"start", start_name(plan.start)},
+      {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
+      {"sweep", sweep_name(plan.sweep.kind())},
+      {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
+      {"frequencies", std::to_string(plan.frequencies.size())},
+      {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
   if (plan.route.tolerance > 0.0) attributes.emplace_back("tolerance", fmt::format("{}", plan.route.tolerance));
   return attributes;
@@ -95,28 +96,6 @@ void append(const Vector& values, std::vector<double>& rows) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& status_words() {
-  static const std::vector<std::string> words{"converged",      "not_converged", "subharmonic",
-                                              "quasi_periodic", "unbounded",     "impossible"};
-  return words;
-}
-
-PointStatus point_status(integrate::SteadyStatus status) {
-  switch (status) {
-    case integrate::SteadyStatus::converged:
-      return PointStatus::converged;
-    case integrate::SteadyStatus::not_converged:
-      return PointStatus::not_converged;
-    case integrate::SteadyStatus::subharmonic:
-      return PointStatus::subharmonic;
-    case integrate::SteadyStatus::quasi_periodic:
-      return PointStatus::quasi_periodic;
-    case integrate::SteadyStatus::unbounded:
-      return PointStatus::unbounded;
-  }
-  return PointStatus::not_converged;
-}
 
 std::vector<std::string> reserved_columns() {
   return {"point",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/frequency_response_plan.hpp>
+#include <rubato/analysis/status_counts.hpp>
 #include <rubato/results/sink.hpp>
 
 #include <array>
@@ -9,14 +10,6 @@
 #include <vector>
 
 namespace rubato::analysis {
-
-/// What became of a point: the statuses of the solvers, and one for parameters that no model can have.
-enum class PointStatus { converged, not_converged, subharmonic, quasi_periodic, unbounded, impossible };
-inline constexpr std::size_t point_statuses = 6;
-
-/// The words of the column `status`, by PointStatus.
-const std::vector<std::string>& status_words();
-PointStatus point_status(integrate::SteadyStatus status);
 
 /// Percentiles that are kept of random samples.
 inline constexpr std::array<int, 5> band_percents{5, 25, 50, 75, 95};

@@ -187,6 +187,9 @@ class Refinement {
     if (!here) return std::nullopt;
     Optimum result{Optimum::Kind::uncertified, p, {*here}, {nan, 0.0}, {1.0, 0.0}, 0.0};
     if (!before || !after || !near_before || !near_after) return result;
+    // The best point was not near enough before to see that the highest peaks at its sides are two.
+    if (!is_same(*near_before, *near_after))
+      if (auto found = kink(p, *near_before, *near_after)) return found;
     const double left = (here->value - before->value) / h, right = (after->value - here->value) / h;
     const double near_left = (here->value - near_before->value) / (0.5 * h),
                  near_right = (near_after->value - here->value) / (0.5 * h);
@@ -194,7 +197,7 @@ class Refinement {
     const bool turns = sign_ * near_left < 0.0 && sign_ * near_right > 0.0;
     if (!turns || near_left / left < 0.75 || near_right / right < 0.75) return result;
     const double multiplier = near_right / (near_right - near_left);
-    return Optimum{Optimum::Kind::corner,          p,  {*near_before, *near_after}, {near_left, near_right},
+    return Optimum{Optimum::Kind::corner,          p,  {*here, *here}, {near_left, near_right},
                    {multiplier, 1.0 - multiplier}, 0.0};
   }
 

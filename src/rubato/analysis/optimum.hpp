@@ -32,7 +32,7 @@ struct Optimum {
   };
   Kind kind = Kind::smooth;
   double parameter = 0.0;
-  std::vector<Peak> active;               ///< one peak, or the two of a kink; before and behind a corner
+  std::vector<Peak> active;               ///< one peak, or the two of a kink; that of a corner twice
   std::array<double, 2> derivative{};     ///< dF/dp of each active peak
   std::array<double, 2> multiplier{1.0};  ///< >= 0, sum 1: sum of multiplier * derivative is 0 at a kink or corner
   double curvature = 0.0;                 ///< d2F/dp2 of a smooth one

@@ -6,6 +6,7 @@
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/static.hpp>
+#include <rubato/analysis/structure_tables.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/stepper.hpp>
 
@@ -164,6 +165,13 @@ struct Run {
   }
 };
 
+/// Analyses whose results are motions of the whole structure; those of a sweep have no shape to draw.
+bool is_drawn(const model::AnalysisDescription& analysis) {
+  return std::holds_alternative<model::TransientDescription>(analysis.task) ||
+         std::holds_alternative<model::ModesDescription>(analysis.task) ||
+         std::holds_alternative<model::StaticDescription>(analysis.task);
+}
+
 }  // namespace
 
 AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
@@ -172,6 +180,9 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
   RunReport report = std::visit(Run{analysis, input, context}, analysis.task);
+  const std::size_t nodes = input.study.model.structure.nodes.size();
+  if (is_drawn(analysis) && nodes > 0 && nodes <= most_drawn_nodes)
+    write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);
   auto notes = report.statistics;
   for (std::size_t i = 0; i < report.warnings.size(); ++i)
     notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);

@@ -1,6 +1,7 @@
 #include <rubato/analysis/interpolation.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/analysis/transient_recorder.hpp>
+#include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ class TransientObserver final : public integrate::Observer {
         recorder_(recorder),
         context_(context),
         ledger_(system),
-        interpolation_(system),
+        interpolation_(system, integrate::find_method(plan.method.name).order),
         between_(plan.start),
         steps_a_report_(system.size() > 1000 ? 1 : 256) {}
 
@@ -56,12 +57,12 @@ class TransientObserver final : public integrate::Observer {
   /// How many steps there will be is not known of automatic ones.
   double progress(const system::State& state) const { return plan_.automatic ? state.t : static_cast<double>(steps_); }
 
-  void record(const system::State& before, const system::State& now) {
+  void record(const system::State& before, const system::State& now, const Vector* acceleration = nullptr) {
     if (plan_.energy) {
       const Energy energy = ledger_.at(before, now);
-      recorder_.record(now, &energy);
+      recorder_.record(now, &energy, acceleration);
     } else {
-      recorder_.record(now, nullptr);
+      recorder_.record(now, nullptr, acceleration);
     }
     last_recorded_ = true;
   }
@@ -73,17 +74,15 @@ class TransientObserver final : public integrate::Observer {
 
   void record_between(const system::State& before, const system::State& after) {
     const double round_off = 1e-9 * (after.t - before.t);
-    bool taken = false;
+    interpolation_.take(before, after);
     for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
       ++next_;
       if (t >= after.t - round_off) {
         record(before, after);
         continue;
       }
-      if (!taken) interpolation_.take(before, after);
-      taken = true;
-      interpolation_.at(t, between_);
-      record(before, between_);
+      interpolation_.at(t, between_, between_acceleration_);
+      record(before, between_, &between_acceleration_);
     }
   }
 
@@ -93,6 +92,7 @@ class TransientObserver final : public integrate::Observer {
   EnergyLedger ledger_;
   StepInterpolation interpolation_;
   system::State between_;
+  Vector between_acceleration_;
   long steps_a_report_, steps_ = 0, next_ = 0;
   bool last_recorded_ = false;
 };
@@ -128,7 +128,8 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
     case integrate::StepOutcome::accepted:
       break;
   }
-  return fmt::format("at t = {} s with the step {} s {}; {}", report.failed_at, report.failed_step, what, remedy);
+  return fmt::format("at t = {:.9g} s with the step {:.6g} s {}; {}", report.failed_at, report.failed_step, what,
+                     remedy);
 }
 
 }  // namespace
@@ -176,7 +177,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     run.message = reason(report, system);
   } else if (report.end == integrate::MarchEnd::stopped && state.t < plan.duration) {
     run.status = RunStatus::interrupted;
-    run.message = fmt::format("interrupted at t = {} s of {} s", state.t, plan.duration);
+    run.message = fmt::format("interrupted at t = {:.6g} s of {} s", state.t, plan.duration);
   }
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
   return run;

@@ -54,8 +54,11 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
                               {{"type", "energy"}}});
 }
 
-void TransientRecorder::record(const system::State& state, const Energy* energy) {
-  equilibrium_(state, acceleration_);
+void TransientRecorder::record(const system::State& state, const Energy* energy, const Vector* acceleration) {
+  if (acceleration)
+    acceleration_ = *acceleration;
+  else
+    equilibrium_(state, acceleration_);
   row_.clear();
   row_.push_back(state.t);
   observed_.append({&state.q, &state.v, &acceleration_}, row_);

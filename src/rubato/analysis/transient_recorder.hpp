@@ -18,8 +18,9 @@ class TransientRecorder {
   TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
                     results::Sink& sink);
 
-  /// @param energy  null without a ledger
-  void record(const system::State& state, const Energy* energy);
+  /// @param energy        null without a ledger
+  /// @param acceleration  where it is not that of equilibrium at the state: between the ends of a step; may be null
+  void record(const system::State& state, const Energy* energy, const Vector* acceleration = nullptr);
   bool keeps_energy() const { return energy_rows_ != nullptr; }
   long rows() const { return count_; }
 

@@ -3,6 +3,7 @@
 #include <rubato/integrate/controllers/controller.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/estimators/estimator.hpp>
+#include <rubato/integrate/timeline.hpp>
 
 namespace rubato::integrate {
 
@@ -12,7 +13,7 @@ struct StepPlan {
   double first = 0.0;          ///< [s]; 0: the estimator's, and after a jump of a load its again
   double smallest = 0.0;       ///< a controller that asks for less ends the march [s]
   double largest = HUGE_VAL;   ///< [s]
-  bool locate_events = false;  ///< steps end where a slider changes its state
+  bool locate_events = false;  ///< steps end at transitions of the timeline
   bool rebuild = true;  ///< the auxiliary acceleration when the step changes; the paper of Cardona and Cassano does not
 };
 
@@ -22,7 +23,7 @@ enum class TryOutcome {
   not_converged,    ///< the step failed and is halved; likewise the next two
   not_finite,
   singular,
-  event,  ///< ended beyond, or not quite at, a transition that is being located
+  event,  ///< ended beyond a transition, or was a try on the way to it
 };
 
 /// One try of a step, for the history.
@@ -52,11 +53,21 @@ struct AdaptiveReport {
 };
 
 /// The loop with steps that choose themselves: from state.t to `end`, which the last step meets exactly. No step passes
-/// a row of a table of loads; steps towards one are made equal. A rejected try leaves no trace: the next starts from
+/// a breakpoint of the timeline; steps towards one are made equal. A rejected try leaves no trace: the next starts from
 /// the same bits.
+///
+/// With `locate_events` a step that would pass a transition is tried again with the length at which the guard vanishes
+/// on the interpolated step, then corrected by Newton's iteration on the guard within a bracket, until the guard is
+/// zero, or its zero bracketed, to the resolution of the timeline. Only then is its error estimated: a transition is no
+/// error. The march restarts there. A transition within a millionth of the wanted step after the start of a step is
+/// passed over, so that an accumulation of transitions does not stop the march.
 /// @param state     start, with the acceleration of equilibrium as its auxiliary one (consistent_start); on return the
 ///                  last accepted state
 /// @param observer  may be null   @param log  may be null
+AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan, Timeline& timeline,
+                     system::State& state, double end, Observer* observer = nullptr, TryLog* log = nullptr);
+
+/// The same with the timeline of a structure, which locates to 1e-12 of the march.
 AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan,
                      const system::LocallyNonlinear& system, system::State& state, double end,
                      Observer* observer = nullptr, TryLog* log = nullptr);

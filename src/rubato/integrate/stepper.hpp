@@ -28,6 +28,9 @@ class Stepper {
     (void)ratio;
   }
 
+  /// The auxiliary acceleration stands at t + shift h, but for terms of second order in h.
+  virtual double shift() const { return 0.0; }
+
   /// The difference of the two solutions of an embedded pair in the last attempt [n]: an error of h^(order + 1) of the
   /// lower order. Returns false, and writes nothing, where there is no pair.
   virtual bool embedded_difference(Vector& dq, Vector& dv) const {

@@ -25,6 +25,15 @@ std::string write_failure(const std::filesystem::path& file, int error_number) {
   return fmt::format("{}: {}; write elsewhere (-o DIR)", file.string(), reason);
 }
 
+namespace {
+
+std::string size_text(double bytes) {
+  if (bytes < 1e9) return fmt::format("{:.3g} MB", bytes / 1e6);
+  return bytes < 1e12 ? fmt::format("{:.3g} GB", bytes / 1e9) : fmt::format("{:.3g} TB", bytes / 1e12);
+}
+
+}  // namespace
+
 void prepare_output_folder(const std::filesystem::path& folder, double expected_bytes) {
   namespace fs = std::filesystem;
   std::error_code fault;
@@ -45,9 +54,9 @@ void prepare_output_folder(const std::filesystem::path& folder, double expected_
   const auto space = fs::space(folder, fault);
   if (!fault && expected_bytes + disk_reserve > static_cast<double>(space.available))
     throw OutputError(fmt::format(
-        "{}: the results will take about {:.3g} GB and {:.3g} GB are free; write fewer rows "
-        "(output = {{ interval = ... }}, observe = [...]) or elsewhere (-o DIR)",
-        folder.string(), (expected_bytes + disk_reserve) / 1e9, static_cast<double>(space.available) / 1e9));
+        "{}: the results may take {} and {} are free; observe less (observe = [...]), of a transient write fewer rows "
+        "(output = {{ interval = ... }}), or write elsewhere (-o DIR)",
+        folder.string(), size_text(expected_bytes + disk_reserve), size_text(static_cast<double>(space.available))));
 }
 
 bool has_disk_space(const std::filesystem::path& file, double growth) {

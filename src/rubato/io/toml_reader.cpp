@@ -56,7 +56,8 @@ void TomlReader::refuse_misspelling_of(const std::string& key) const {
   for (const auto& [present, value] : table_) {
     const std::string name(present.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    if (nearest_name(name, std::vector<std::string>{key}).empty()) continue;
+    const bool has_its_begin = name.starts_with(key + "_") || (name.size() >= 3 && key.starts_with(name));
+    if (!has_its_begin && nearest_name(name, std::vector<std::string>{key}).empty()) continue;
     throw InvalidInput(location(present), fmt::format("{} has no key \"{}\"; did you mean \"{}\"?", what_, name, key));
   }
 }

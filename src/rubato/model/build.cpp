@@ -210,6 +210,8 @@ class Builder {
   Index find(const std::string& name, const Location& where, const std::string& role) const {
     const auto found = places_.find(name);
     if (found != places_.end()) return found->second;
+    if (name == "ground")
+      throw InvalidInput(where, fmt::format("{} the ground, which does not move; name a coordinate", role));
     if (fixed_.count(name) > 0) throw InvalidInput(where, fmt::format("{} \"{}\", which a support holds", role, name));
     refuse_missing_axis(name, where, role);
     const std::vector<std::string> what_does_not_move{"ground"};

@@ -1,21 +1,43 @@
 #include <rubato/numerics/complex_ldlt.hpp>
 
-#include <Eigen/OrderingMethods>
+#include <camd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <numeric>
 
 namespace rubato::numerics {
 
+namespace {
+
 using Complex = std::complex<double>;
 
-void ComplexLdlt::analyse(const SparseMatrix& pattern) {
+// Products and quotients by parts: the operators of std::complex look after infinities, at three times the price.
+inline Complex product(Complex a, Complex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+inline Complex inverse(Complex a) {
+  // Scaled by its larger part, so that the square neither overflows nor vanishes.
+  const double scale = 1.0 / std::max(std::abs(a.real()), std::abs(a.imag()));
+  const double re = a.real() * scale, im = a.imag() * scale, factor = scale / (re * re + im * im);
+  return {re * factor, -im * factor};
+}
+
+}  // namespace
+
+void ComplexLdlt::analyse(const SparseMatrix& pattern, std::span<const int> last) {
   n_ = pattern.rows();
   const auto n = static_cast<std::size_t>(n_);
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(pattern, permutation);
-  order_.assign(permutation.indices().data(), permutation.indices().data() + n_);
+  order_.resize(n);
+  std::vector<int> constraint(n, 0);
+  for (const int row : last) constraint[static_cast<std::size_t>(row)] = 1;
+  double control[CAMD_CONTROL], info[CAMD_INFO];
+  camd_defaults(control);
+  const int status = camd_order(static_cast<int>(n_), pattern.outerIndexPtr(), pattern.innerIndexPtr(), order_.data(),
+                                control, info, last.empty() ? nullptr : constraint.data());
+  if (status != CAMD_OK && status != CAMD_OK_BUT_JUMBLED) throw std::bad_alloc();
   position_.resize(n);
   for (std::size_t place = 0; place < n; ++place) position_[static_cast<std::size_t>(order_[place])] = int(place);
 
@@ -37,7 +59,7 @@ void ComplexLdlt::analyse(const SparseMatrix& pattern) {
   for (std::size_t i = 0; i < n; ++i) start_[i + 1] = start_[i] + count[i];
   row_.resize(static_cast<std::size_t>(start_[n]));
   value_.resize(row_.size());
-  pivot_.resize(n);
+  inverse_pivot_.resize(n);
   work_.assign(n, 0.0);
   path_.resize(n);
   filled_.resize(n);
@@ -73,25 +95,20 @@ Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& sc
       const Complex now = work_[j];
       work_[j] = 0.0;
       const int end = start_[j] + filled_[j];
-      // Products by parts: the operator of std::complex looks after infinities, at three times the price.
-      const double re = now.real(), im = now.imag();
-      for (int p = start_[j]; p < end; ++p) {
-        const Complex l = value_[std::size_t(p)];
-        Complex& target = work_[std::size_t(row_[std::size_t(p)])];
-        target = {target.real() - (l.real() * re - l.imag() * im), target.imag() - (l.real() * im + l.imag() * re)};
-      }
-      const Complex multiplier = now / pivot_[j];
-      diagonal -= multiplier * now;
+      for (int p = start_[j]; p < end; ++p)
+        work_[std::size_t(row_[std::size_t(p)])] -= product(value_[std::size_t(p)], now);
+      const Complex multiplier = product(now, inverse_pivot_[j]);
+      diagonal -= product(multiplier, now);
       row_[std::size_t(end)] = k;
       value_[std::size_t(end)] = multiplier;
       ++filled_[j];
     }
     const double least = tiny * scale[order_[std::size_t(k)]];
-    if (std::abs(diagonal) < least) {
+    if (std::max(std::abs(diagonal.real()), std::abs(diagonal.imag())) < least) {
       diagonal = {0.0, least};
       ++replaced;
     }
-    pivot_[std::size_t(k)] = diagonal;
+    inverse_pivot_[std::size_t(k)] = inverse(diagonal);
   }
   return replaced;
 }
@@ -100,25 +117,69 @@ void ComplexLdlt::solve(Eigen::Ref<Eigen::MatrixXcd> x) const {
   std::vector<Complex> y(static_cast<std::size_t>(n_));
   for (Index column = 0; column < x.cols(); ++column) {
     for (std::size_t i = 0; i < y.size(); ++i) y[i] = x(order_[i], column);
-    for (std::size_t j = 0; j < y.size(); ++j) {
-      const double re = y[j].real(), im = y[j].imag();
-      for (int p = start_[j]; p < start_[j + 1]; ++p) {
-        const Complex l = value_[std::size_t(p)];
-        Complex& target = y[std::size_t(row_[std::size_t(p)])];
-        target = {target.real() - (l.real() * re - l.imag() * im), target.imag() - (l.real() * im + l.imag() * re)};
-      }
-    }
+    for (std::size_t j = 0; j < y.size(); ++j)
+      for (int p = start_[j]; p < start_[j + 1]; ++p)
+        y[std::size_t(row_[std::size_t(p)])] -= product(value_[std::size_t(p)], y[j]);
     for (std::size_t j = y.size(); j-- > 0;) {
-      const Complex scaled = y[j] / pivot_[j];
-      double re = scaled.real(), im = scaled.imag();
-      for (int p = start_[j]; p < start_[j + 1]; ++p) {
-        const Complex l = value_[std::size_t(p)], above = y[std::size_t(row_[std::size_t(p)])];
-        re -= l.real() * above.real() - l.imag() * above.imag();
-        im -= l.real() * above.imag() + l.imag() * above.real();
-      }
-      y[j] = {re, im};
+      Complex sum = product(y[j], inverse_pivot_[j]);
+      for (int p = start_[j]; p < start_[j + 1]; ++p)
+        sum -= product(value_[std::size_t(p)], y[std::size_t(row_[std::size_t(p)])]);
+      y[j] = sum;
     }
     for (std::size_t i = 0; i < y.size(); ++i) x(order_[i], column) = y[i];
+  }
+}
+
+void ComplexLdlt::reach(const SparseMatrix& columns, Index column, std::vector<int>& rows) {
+  rows.clear();
+  std::fill(mark_.begin(), mark_.end(), -1);
+  for (SparseMatrix::InnerIterator entry(columns, column); entry; ++entry)
+    for (int i = position_[std::size_t(entry.row())]; i >= 0 && mark_[std::size_t(i)] < 0;
+         i = parent_[std::size_t(i)]) {
+      mark_[std::size_t(i)] = 0;
+      rows.push_back(i);
+    }
+  if (rows.size() < mark_.size() / 8) {
+    std::sort(rows.begin(), rows.end());
+    return;
+  }
+  rows.clear();
+  for (std::size_t i = 0; i < mark_.size(); ++i)
+    if (mark_[i] == 0) rows.push_back(static_cast<int>(i));
+}
+
+void ComplexLdlt::condense(const SparseMatrix& columns, Eigen::MatrixXcd& out) {
+  const Index k = columns.cols();
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(k));
+  for (Index c = 0; c < k; ++c) reach(columns, c, rows[std::size_t(c)]);
+  // The short ones first: each pair costs the rows of its shorter column.
+  std::vector<Index> sequence(static_cast<std::size_t>(k));
+  std::iota(sequence.begin(), sequence.end(), Index{0});
+  std::stable_sort(sequence.begin(), sequence.end(),
+                   [&](Index a, Index b) { return rows[std::size_t(a)].size() < rows[std::size_t(b)].size(); });
+  out.resize(k, k);
+  std::vector<std::vector<Complex>> scaled(static_cast<std::size_t>(k));  // D^-1 Y, by the rows of each column
+  for (std::size_t b = 0; b < sequence.size(); ++b) {
+    const Index column = sequence[b];
+    const auto& own = rows[std::size_t(column)];
+    for (SparseMatrix::InnerIterator entry(columns, column); entry; ++entry)
+      work_[std::size_t(position_[std::size_t(entry.row())])] += entry.value();
+    auto& y = scaled[std::size_t(column)];
+    y.reserve(own.size());
+    for (const int j : own) {
+      const Complex now = work_[std::size_t(j)];
+      for (int p = start_[std::size_t(j)]; p < start_[std::size_t(j) + 1]; ++p)
+        work_[std::size_t(row_[std::size_t(p)])] -= product(value_[std::size_t(p)], now);
+      y.push_back(product(now, inverse_pivot_[std::size_t(j)]));
+    }
+    for (std::size_t a = 0; a <= b; ++a) {
+      const Index other = sequence[a];
+      Complex sum = 0.0;
+      for (std::size_t i = 0; i < rows[std::size_t(other)].size(); ++i)
+        sum += product(scaled[std::size_t(other)][i], work_[std::size_t(rows[std::size_t(other)][i])]);
+      out(other, column) = out(column, other) = sum;
+    }
+    for (const int j : own) work_[std::size_t(j)] = 0.0;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/SparseCore>
 
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace rubato::numerics {
@@ -18,11 +19,12 @@ using SparseComplexMatrix = Eigen::SparseMatrix<std::complex<double>>;  ///< by 
 /// scale, so that the factor always exists, and the caller checks the residual of what it solves.
 ///
 /// Row by row, after Davis, "Algorithm 849: a concise sparse Cholesky factorization package", 2005; ordered by
-/// approximate minimum degree.
+/// constrained approximate minimum degree (CAMD).
 class ComplexLdlt {
  public:
   /// Orders and analyses a symmetric pattern [n x n].
-  void analyse(const SparseMatrix& pattern);
+  /// @param last  rows to be eliminated last, each once: columns with entries in these alone are cheap to condense
+  void analyse(const SparseMatrix& pattern, std::span<const int> last = {});
 
   /// Factorises a matrix of the analysed pattern (both triangles).
   /// @param scale  size of the terms that each diagonal entry is the sum of [n]
@@ -35,11 +37,18 @@ class ComplexLdlt {
   /// x <- S^-1 x for each column [n x k].
   void solve(Eigen::Ref<Eigen::MatrixXcd> x) const;
 
+  /// out = C^T S^-1 C [k x k] for sparse columns C [n x k]: Y^T D^-1 Y with Y = L^-1 C, over the rows that each column
+  /// reaches in the elimination tree. Nothing is substituted backwards.
+  void condense(const SparseMatrix& columns, Eigen::MatrixXcd& out);
+
  private:
+  /// The rows of L^-1 c that are not zero, rising.
+  void reach(const SparseMatrix& columns, Index column, std::vector<int>& rows);
+
   Index n_ = 0;
   std::vector<int> order_, position_, parent_;  // order_[place] = row
   std::vector<int> start_, row_, filled_;       // L without its unit diagonal, by columns
-  std::vector<std::complex<double>> value_, pivot_, work_;
+  std::vector<std::complex<double>> value_, inverse_pivot_, work_;
   std::vector<int> mark_, path_;
 };
 

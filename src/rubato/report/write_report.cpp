@@ -3,6 +3,7 @@
 #include <rubato/report/json.hpp>
 #include <rubato/report/page.hpp>
 #include <rubato/report/results_tables.hpp>
+#include <rubato/report/scene_json.hpp>
 #include <rubato/report/table_json.hpp>
 #include <rubato/report/theory_json.hpp>
 #include <rubato/report/write_report.hpp>
@@ -29,6 +30,9 @@ bool is_modes(const TableSource& table) {
   return std::any_of(variables.begin(), variables.end(), [](const Variable& v) { return v.name == "damping_ratio"; });
 }
 
+/// A table that is there for the picture of a structure.
+bool is_drawing(const TableSource& table) { return table.name() == "nodes" || table.name() == "lines"; }
+
 std::string digest_json(const TableSource& table, const Attributes& analysis) {
   if (is_modes(table)) {
     Extent extent;
@@ -41,10 +45,12 @@ std::string digest_json(const TableSource& table, const Attributes& analysis) {
 
 std::string analysis_json(const AnalysisTables& analysis) {
   std::string tables;
-  for (const auto& table : analysis.tables)
+  for (const auto& table : analysis.tables) {
+    if (is_drawing(*table)) continue;  // the scene holds what it says
     tables += (tables.empty() ? "" : ",") + digest_json(*table, analysis.attributes);
-  return fmt::format(R"({{"name":{},"attributes":{},"tables":[{}]}})", json_string(analysis.name),
-                     attributes_json(analysis.attributes), tables);
+  }
+  return fmt::format(R"({{"name":{},"attributes":{},"scene":{},"tables":[{}]}})", json_string(analysis.name),
+                     attributes_json(analysis.attributes), scene_json(read_scene(analysis)), tables);
 }
 
 /// Writes beside `file` and moves it there, so that a full disk leaves what was there before.

@@ -2,18 +2,24 @@
 
 #include <rubato/core/types.hpp>
 
+#include <vector>
+
 namespace rubato::system {
 
 /// Where a system is: all that its equations need, and the auxiliary acceleration that one-step methods carry.
 /// A value: copying, comparing and restoring it is exact, and there is nothing else to restore.
 struct State {
   double t = 0.0;       ///< [s]
-  Vector q;             ///< configuration [n] [m]
+  Vector q;             ///< configuration [n] [m]; of a mechanism all numbers of its nodes
   Vector v;             ///< velocity [n] [m/s]
   Vector slider_force;  ///< fc of each slider [m] [N]: its history
   /// The acceleration that a method of the alpha family weights (that of equilibrium at a shifted time), [n] [m/s2].
   /// What is reported is system::LocallyNonlinear::acceleration instead. Methods that need none leave it as it is.
   Vector auxiliary_acceleration;
+  // Of mechanisms only:
+  Vector acceleration;     ///< that of equilibrium at t [n] [m/s2]
+  Vector multiplier;       ///< of the constraints [c] [N], [N m]
+  std::vector<int> phase;  ///< of each lock (model::LockPhase): its history
 };
 
 }  // namespace rubato::system

@@ -21,9 +21,9 @@ class EmbeddedEstimator : public Estimator {
   ///               alone passes through zero, and a step that grows there is rejected soon after; infinity: no peaks
   EmbeddedEstimator(double tolerance, double decay, const system::LocallyNonlinear& system, double duration)
       : tolerance_(tolerance),
-        scales_(system, duration, 1),
+        space_(make_error_space(system)),
+        scales_(*space_, duration, 1),
         decay_(decay),
-        norm_(system),
         dq_(system.size()),
         dv_(system.size()),
         change_(system.size()) {}
@@ -36,11 +36,11 @@ class EmbeddedEstimator : public Estimator {
   double error(const system::State& from, const system::State& to, double h) override {
     h_ = h;
     change_ = to.q - from.q;
-    rate_ = norm_.squared(change_) / (h * h);
+    rate_ = space_->squared(change_) / (h * h);
     change_ = to.v - from.v;
-    changed_ = norm_.squared(change_);
+    changed_ = space_->squared(change_);
     differ(from, to, h);
-    const double now = scales_.relative(norm_.squared(dq_), norm_.squared(dv_), to) * factor(h) / tolerance_;
+    const double now = scales_.relative(space_->squared(dq_), space_->squared(dv_), to) * factor(h) / tolerance_;
     const double power = std::pow(h, exponent());
     density_now_ = std::fmax(now / power, density_ * std::exp(-decay_ * scales_.frequency() * h));
     return std::isfinite(now) ? density_now_ * power : now;
@@ -57,6 +57,7 @@ class EmbeddedEstimator : public Estimator {
   virtual double factor(double h) const = 0;
 
   double tolerance_;
+  std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;
 
  private:
@@ -64,7 +65,6 @@ class EmbeddedEstimator : public Estimator {
   double density_ = 0.0, density_now_ = 0.0;  // error over h^exponent
 
  protected:
-  MassNorm norm_;
   Vector dq_, dv_;
 
  private:

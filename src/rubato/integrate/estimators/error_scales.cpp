@@ -1,5 +1,4 @@
 #include <rubato/integrate/estimators/error_scales.hpp>
-#include <rubato/integrate/estimators/response_scales.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +6,8 @@
 
 namespace rubato::integrate {
 
-ErrorScales::ErrorScales(const system::LocallyNonlinear& system, double duration, int derivative)
-    : system_(system),
-      norm_(system),
-      product_(system.size()),
-      duration_(duration),
-      derivative_(derivative),
-      is_damped_(system.damping().nonZeros() > 0) {}
+ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
+    : space_(space), duration_(duration), derivative_(derivative), is_damped_(space.is_damped()) {}
 
 void ErrorScales::start(const system::State& state) {
   y_ = rate_ = 0.0;
@@ -22,9 +16,9 @@ void ErrorScales::start(const system::State& state) {
 }
 
 void ErrorScales::expect(const system::State& state) {
-  const ResponseScales scales = response_scales(system_, state, state.auxiliary_acceleration, duration_);
+  const ResponseScales scales = space_.scales(state, state.auxiliary_acceleration, duration_);
   const double omega = scales.frequency;
-  size_ = std::max(size_, scales.size);
+  size_ = std::max({size_, scales.size, space_.least_size()});
   third_at_start_ = omega * omega * omega * scales.size;
   y_ = std::pow(std::pow(omega, derivative_) * scales.size, 2);
   rate_ = omega * omega * y_;
@@ -43,7 +37,7 @@ double ErrorScales::memory() const {
 double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to) const {
   double size = size_, omega = frequency();
   if (!(size > 0.0)) {  // at rest until now: by what it is about to do
-    const ResponseScales scales = response_scales(system_, to, to.auxiliary_acceleration, duration_);
+    const ResponseScales scales = space_.scales(to, to.auxiliary_acceleration, duration_);
     if (scales.size == 0.0) return 0.0;
     size = std::max(size, scales.size);
     omega = scales.frequency;
@@ -62,10 +56,9 @@ void ErrorScales::accept(const Vector& shape, double shape_squared, double y, do
   }
   constexpr long stride = 4;
   if (steps_++ % stride != 0) return;
-  size_ = std::max(size_, norm_(to.q));
+  size_ = std::max(size_, space_.displacement(to));
   if (!is_damped_) return;
-  product_.noalias() = system_.damping() * shape;
-  const double damping = 0.5 * shape.dot(product_) / shape_squared;
+  const double damping = 0.5 * space_.damping(shape) / shape_squared;
   const double weight = -std::expm1(-static_cast<double>(stride) * frequency() * h);
   damping_ = damping_ < 0.0 ? damping : damping_ + weight * (damping - damping_);
 }

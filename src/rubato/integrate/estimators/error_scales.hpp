@@ -1,7 +1,6 @@
 #pragma once
 
-#include <rubato/integrate/estimators/mass_norm.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
+#include <rubato/integrate/estimators/error_space.hpp>
 
 namespace rubato::integrate {
 
@@ -15,7 +14,7 @@ namespace rubato::integrate {
 class ErrorScales {
  public:
   /// @param derivative  of q that the y of accept() is: 3 or 1
-  ErrorScales(const system::LocallyNonlinear& system, double duration, int derivative);
+  ErrorScales(ErrorSpace& space, double duration, int derivative);
 
   void start(const system::State& state);
 
@@ -37,9 +36,7 @@ class ErrorScales {
  private:
   void expect(const system::State& state);
 
-  const system::LocallyNonlinear& system_;
-  MassNorm norm_;
-  Vector product_;
+  ErrorSpace& space_;
   double duration_;
   int derivative_;
   bool is_damped_;

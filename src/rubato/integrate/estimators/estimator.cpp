@@ -35,13 +35,25 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Metho
                     name_of(kind), method.name,
                     can_embed(method) ? "take the estimator embedded"
                                       : "take the method generalized_alpha, or for an explicit one dormand_prince"));
+  const GeneralizedAlpha linear{0.0, 0.0, 1.0 / 6.0, 0.5};  // acceleration
+  const auto* local = std::get_if<LocalError>(&kind);
+  if (alpha || !local)
+    return make_estimator(kind, alpha ? *alpha : linear, make_error_space(system), system.start(), duration);
+  require_tolerance(local->tolerance, true);
+  return make_local_error(*local, error_constants(*wilson), make_error_space(system), duration);
+}
+
+std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const GeneralizedAlpha& method,
+                                          std::unique_ptr<ErrorSpace> space, const system::State& start,
+                                          double duration) {
   if (const auto* jump = std::get_if<InertiaJump>(&kind)) {
     require_tolerance(jump->tolerance, false);
-    return make_inertia_jump(*jump, alpha ? *alpha : GeneralizedAlpha{0.0, 0.0, 1.0 / 6.0, 0.5}, system);
+    return make_inertia_jump(*jump, method, std::move(space), start);
   }
-  const auto& local = std::get<LocalError>(kind);
-  require_tolerance(local.tolerance, true);
-  return make_local_error(local, alpha ? error_constants(*alpha) : error_constants(*wilson), system, duration);
+  const auto* local = std::get_if<LocalError>(&kind);
+  if (!local) throw InvalidInput("the estimator embedded compares two methods; take local_error or inertia_jump");
+  require_tolerance(local->tolerance, true);
+  return make_local_error(*local, error_constants(method), std::move(space), duration);
 }
 
 EstimatorKind default_estimator(const Method& method, double tolerance) {

@@ -11,6 +11,8 @@
 // An estimator measures the error of a try and divides it by the tolerance. It decides nothing.
 namespace rubato::integrate {
 
+class ErrorSpace;
+
 class Estimator {
  public:
   virtual ~Estimator() = default;
@@ -83,6 +85,12 @@ using EstimatorKind = std::variant<InertiaJump, LocalError, Embedded>;
 /// its range, and for a reference value that is not positive.
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Method& method,
                                           const system::LocallyNonlinear& system, Stepper& stepper, double duration);
+
+/// The same of other equations, for methods of the alpha family: the estimator keeps the space.
+/// @param start  where the march starts: what `reference` = 0 measures by
+std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const GeneralizedAlpha& method,
+                                          std::unique_ptr<ErrorSpace> space, const system::State& start,
+                                          double duration);
 
 /// The estimator of a method unless another is asked for: `embedded` for pairs and Wilson-theta, else `local_error`.
 EstimatorKind default_estimator(const Method& method, double tolerance);

@@ -1,7 +1,5 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/estimators/estimators.hpp>
-#include <rubato/integrate/estimators/mass_norm.hpp>
-#include <rubato/integrate/estimators/response_scales.hpp>
 
 #include <cmath>
 #include <limits>
@@ -20,10 +18,11 @@ double mean_error(double omega_h, const GeneralizedAlpha& p, bool as_printed) {
 
 class InertiaJumpEstimator final : public Estimator {
  public:
-  InertiaJumpEstimator(const InertiaJump& kind, const GeneralizedAlpha& method, const system::LocallyNonlinear& system)
-      : kind_(kind), system_(system), norm_(system), jump_(system.size()) {
+  InertiaJumpEstimator(const InertiaJump& kind, const GeneralizedAlpha& method, std::unique_ptr<ErrorSpace> space,
+                       const system::State& start)
+      : kind_(kind), space_(std::move(space)), jump_(space_->size()) {
     constexpr double cut_off = 0.6;  // Omega_K
-    const double reference = kind.reference > 0.0 ? kind.reference : norm_(system.start().q);
+    const double reference = kind.reference > 0.0 ? kind.reference : space_->displacement(start);
     if (!(reference > 0.0))
       throw InvalidInput(
           "inertia_jump measures by the initial displacements (reference = \"initial\"), and they vanish: give the "
@@ -32,14 +31,14 @@ class InertiaJumpEstimator final : public Estimator {
   }
 
   void start(const system::State& state) override {
-    const ResponseScales scales = response_scales(system_, state, state.auxiliary_acceleration, 1.0);
+    const ResponseScales scales = space_->scales(state, state.auxiliary_acceleration, 1.0);
     // da = omega |a| h, or omega^2 |v| h where the start has no acceleration: half the tolerance.
     const double rate = scales.frequency * scales.frequency * scales.frequency * scales.size;
     first_ = rate > 0.0 ? std::cbrt(0.5 / (scale_ * rate)) : std::numeric_limits<double>::infinity();
   }
   double error(const system::State& from, const system::State& to, double h) override {
     jump_ = to.auxiliary_acceleration - from.auxiliary_acceleration;
-    return scale_ * h * h * norm_(jump_);
+    return scale_ * h * h * space_->norm(jump_);
   }
   void accept(const system::State&) override {}
   void forget() override {}
@@ -48,8 +47,7 @@ class InertiaJumpEstimator final : public Estimator {
 
  private:
   InertiaJump kind_;
-  const system::LocallyNonlinear& system_;
-  MassNorm norm_;
+  std::unique_ptr<ErrorSpace> space_;
   Vector jump_;
   double scale_ = 0.0;  ///< e over TOL is scale h^2 |da|_M
   double first_ = 0.0;
@@ -58,8 +56,8 @@ class InertiaJumpEstimator final : public Estimator {
 }  // namespace
 
 std::unique_ptr<Estimator> make_inertia_jump(const InertiaJump& kind, const GeneralizedAlpha& method,
-                                             const system::LocallyNonlinear& system) {
-  return std::make_unique<InertiaJumpEstimator>(kind, method, system);
+                                             std::unique_ptr<ErrorSpace> space, const system::State& start) {
+  return std::make_unique<InertiaJumpEstimator>(kind, method, std::move(space), start);
 }
 
 }  // namespace rubato::integrate

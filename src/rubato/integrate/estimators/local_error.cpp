@@ -12,14 +12,14 @@ namespace {
 /// auxiliary acceleration where it must settle first, so that the first J after it is good for q''' alone.
 class LocalErrorEstimator final : public Estimator {
  public:
-  LocalErrorEstimator(const LocalError& kind, const ErrorConstants& constants, const system::LocallyNonlinear& system,
+  LocalErrorEstimator(const LocalError& kind, const ErrorConstants& constants, std::unique_ptr<ErrorSpace> space,
                       double duration)
       : tolerance_(kind.tolerance),
         c_(constants),
-        scales_(system, duration, 3),
-        norm_(system),
-        now_(system.size()),
-        last_(system.size()) {}
+        space_(std::move(space)),
+        scales_(*space_, duration, 3),
+        now_(space_->size()),
+        last_(space_->size()) {}
 
   void start(const system::State& state) override {
     scales_.start(state);
@@ -29,7 +29,7 @@ class LocalErrorEstimator final : public Estimator {
   double error(const system::State& from, const system::State& to, double h) override {
     now_.jump = to.auxiliary_acceleration - from.auxiliary_acceleration;
     now_.step = h;
-    now_.product = norm_.times(now_.jump);
+    now_.product = space_->times_mass(now_.jump);
     now_.squared = now_.jump.dot(now_.product);
     now_.third = now_.squared / (h * h);
     now_.fourth = -1.0;
@@ -81,8 +81,8 @@ class LocalErrorEstimator final : public Estimator {
 
   double tolerance_;
   ErrorConstants c_;
+  std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;
-  MassNorm norm_;
   Difference now_, last_;
   int known_ = 0;  // accepted steps since the start or the last kink, up to two
 };
@@ -90,8 +90,8 @@ class LocalErrorEstimator final : public Estimator {
 }  // namespace
 
 std::unique_ptr<Estimator> make_local_error(const LocalError& kind, const ErrorConstants& constants,
-                                            const system::LocallyNonlinear& system, double duration) {
-  return std::make_unique<LocalErrorEstimator>(kind, constants, system, duration);
+                                            std::unique_ptr<ErrorSpace> space, double duration) {
+  return std::make_unique<LocalErrorEstimator>(kind, constants, std::move(space), duration);
 }
 
 }  // namespace rubato::integrate

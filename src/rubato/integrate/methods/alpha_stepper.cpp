@@ -37,7 +37,9 @@ class AlphaStepper final : public Stepper {
   AlphaStepper(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
       : p_(parameters), system_(system), step_(parameters, system), loads_(system.loads()), load_(loads_.count()) {}
 
-  // A stands at t + d h with d = alpha_m - alpha_f: its distance from the acceleration at t is proportional to h.
+  double shift() const override { return p_.alpha_m - p_.alpha_f; }
+
+  // Its distance from the acceleration at t is proportional to h.
   void step_changes(system::State& state, double ratio) override {
     if (p_.alpha_m == 0.0 && p_.alpha_f == 0.0) return;
     if (!equilibrium_) {  // most marches never need it, and it may factorise the mass

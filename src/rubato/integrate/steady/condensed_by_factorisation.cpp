@@ -1,5 +1,6 @@
-#include <rubato/integrate/steady/complex_ldlt.hpp>
+#include <rubato/integrate/steady/assembled_stiffness.hpp>
 #include <rubato/integrate/steady/condensed_structure_routes.hpp>
+#include <rubato/numerics/complex_ldlt.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -14,8 +15,6 @@ namespace {
 
 using Outcome = CondensedStructure::Outcome;
 using Columns = CondensedStructure::Columns;
-using Complex = std::complex<double>;
-
 // What of a singular direction a column must see to be moved by it.
 constexpr double seen = 1e-9;
 
@@ -73,8 +72,7 @@ class DenseFactorisation final : public CondensedStructure::Route {
  private:
   // S Z S with S = 1/sqrt(|K_ii| + held + w^2 M_ii), so that metres and radians weigh the same.
   void factorise(double w, double held) {
-    ComplexMatrix z = stiffness_.cast<Complex>() - (w * w) * mass_.cast<Complex>();
-    z += Complex(0.0, w) * damping_.cast<Complex>();
+    ComplexMatrix z = assembled_stiffness(stiffness_, mass_, damping_, w);
     if (held > 0.0)
       z += (columns_.sliders * (held * columns_.slider_stiffness).asDiagonal() * columns_.sliders.transpose())
                .cast<Complex>();
@@ -125,58 +123,77 @@ class DenseFactorisation final : public CondensedStructure::Route {
   bool is_singular_ = false;
 };
 
-/// L D L^T of the sparse complex symmetric Z without pivoting, judged by the residual of its solutions; where that is
-/// too large, LU with pivoting.
+/// L D L^T of the sparse complex symmetric Z without pivoting, the rows of the columns last, judged by the residual of
+/// one combination of the columns; where that is too large, LU with pivoting.
 class SparseFactorisation final : public CondensedStructure::Route {
  public:
-  explicit SparseFactorisation(const Columns& columns) : columns_(columns) {
-    const auto& system = columns.system;
-    const SparseMatrix stuck = system.stuck_stiffness();
-    springs_ = stuck - system.stiffness();
-    // Sums of zeros keep the entries of every matrix in the pattern.
-    const SparseMatrix pattern = SparseMatrix(0.0 * system.mass() + 0.0 * system.damping()) + 0.0 * stuck;
-    mass_ = pattern + system.mass();
-    damping_ = pattern + system.damping();
-    stiffness_ = pattern + system.stiffness();
-    springs_ = pattern + springs_;
-    matrix_ = pattern.cast<Complex>();
-    factor_.analyse(matrix_);
+  explicit SparseFactorisation(const Columns& columns)
+      : columns_(columns),
+        stiffness_(columns.system, StuckSliders(static_cast<std::size_t>(columns.system.slider_count()), true)) {
+    set_loads();
   }
 
-  void set_loads() override {}
+  void set_loads() override {
+    const Index n = stiffness_.size(), driven = columns_.driven();
+    Matrix all = Matrix::Zero(n, columns_.count());
+    all.leftCols(driven) << columns_.sliders, columns_.loads;
+    for (std::size_t i = 0; i < columns_.observed.size(); ++i) {
+      const auto& [first, second] = columns_.observed[i];
+      if (first != ground) all(first, driven + static_cast<Index>(i)) += 1.0;
+      if (second != ground) all(second, driven + static_cast<Index>(i)) -= 1.0;
+    }
+    sparse_ = all.sparseView();
+    // The rows of a load that is spread over the structure stay where they are.
+    const int spread = std::max(most_own_rows, static_cast<int>(n) / 100);
+    std::vector<bool> is_last(static_cast<std::size_t>(n), false);
+    for (Index column = 0; column < sparse_.cols(); ++column) {
+      if (sparse_.outerIndexPtr()[column + 1] - sparse_.outerIndexPtr()[column] > spread) continue;
+      for (SparseMatrix::InnerIterator entry(sparse_, column); entry; ++entry)
+        is_last[static_cast<std::size_t>(entry.row())] = true;
+    }
+    std::vector<int> last;
+    for (int row = 0; row < n; ++row)
+      if (is_last[static_cast<std::size_t>(row)]) last.push_back(row);
+    combination_ = Vector::LinSpaced(driven, 1.0, 2.0);
+    combined_ = all.leftCols(driven) * combination_;
+    factor_.analyse(stiffness_.pattern(), last);
+  }
 
   Outcome condense(double w, double held, ComplexMatrix& g) override {
+    stiffness_.assemble(w, held);
+    factor_.factorise(stiffness_.matrix(), stiffness_.scale());
+    ComplexMatrix position = combined_.cast<Complex>();
+    factor_.solve(position);
+    if (is_solved(combined_.cast<Complex>(), position)) {
+      factor_.condense(sparse_, condensed_);
+      g = condensed_.leftCols(columns_.driven());
+      if (agrees(g, position)) return Outcome::regular;
+    }
     Matrix driven(columns_.sliders.rows(), columns_.driven());
     driven << columns_.sliders, columns_.loads;
-    ComplexMatrix position;
-    if (!solve(w, held, driven.cast<Complex>(), position))
+    if (!solve_with_pivoting(driven.cast<Complex>(), position))
       return held == 0.0 && columns_.sliders.cols() > 0 ? Outcome::sliders_needed : Outcome::resonance;
     g = columns_.project(position);
     return Outcome::regular;
   }
 
   void expand(double w, double held, const ComplexVector& forces, ComplexVector& position) override {
-    ComplexMatrix out;
     const ComplexMatrix load = columns_.sliders.cast<Complex>() * forces.head(columns_.sliders.cols()) +
                                columns_.loads.cast<Complex>() * forces.tail(columns_.loads.cols());
-    if (solve(w, held, load, out))
+    stiffness_.assemble(w, held);
+    factor_.factorise(stiffness_.matrix(), stiffness_.scale());
+    ComplexMatrix out = load;
+    factor_.solve(out);
+    if (is_solved(load, out) || solve_with_pivoting(load, out))
       position = out;
     else
       position.setConstant(load.rows(), Complex(std::numeric_limits<double>::infinity(), 0.0));
   }
 
  private:
-  bool solve(double w, double held, const ComplexMatrix& load, ComplexMatrix& position) {
-    for (Index i = 0; i < matrix_.nonZeros(); ++i)
-      matrix_.valuePtr()[i] =
-          Complex(stiffness_.valuePtr()[i] + held * springs_.valuePtr()[i] - w * w * mass_.valuePtr()[i],
-                  w * damping_.valuePtr()[i]);
-    if (factor_.factorise(matrix_)) {
-      factor_.solve(load, position);
-      if (is_solved(load, position)) return true;
-    }
+  bool solve_with_pivoting(const ComplexMatrix& load, ComplexMatrix& position) const {
     Eigen::SparseLU<Eigen::SparseMatrix<Complex>> pivoting;
-    pivoting.compute(matrix_);
+    pivoting.compute(stiffness_.matrix());
     if (pivoting.info() != Eigen::Success) return false;
     position = pivoting.solve(load);
     return is_solved(load, position);
@@ -186,15 +203,27 @@ class SparseFactorisation final : public CondensedStructure::Route {
   bool is_solved(const ComplexMatrix& load, const ComplexMatrix& position) const {
     // Squares: the moduli of a million entries cost more than the solution.
     const auto largest = [](const auto& values) { return std::sqrt(values.cwiseAbs2().maxCoeff()); };
-    const double given = largest(load), residual = largest(load - matrix_ * position);
-    const double size = largest(matrix_.coeffs()) * largest(position);
-    return residual <= 1e-9 * given && singular * size <= given;
+    const double given = largest(load), residual = largest(load - stiffness_.matrix() * position);
+    const double size = largest(stiffness_.matrix().coeffs()) * largest(position);
+    return residual <= solved * given && singular * size <= given;
   }
 
+  // The condensed columns answer to the combination as the solution does.
+  bool agrees(const ComplexMatrix& g, const ComplexMatrix& position) const {
+    const ComplexVector seen_of_it = columns_.project(position), summed = g * combination_.cast<Complex>();
+    return (seen_of_it - summed).cwiseAbs().maxCoeff() <= solved * position.cwiseAbs().maxCoeff();
+  }
+
+  static constexpr double solved = 1e-9;
+  static constexpr int most_own_rows = 8;  // of a column, to be eliminated last
+
   const Columns& columns_;
-  SparseMatrix mass_, damping_, stiffness_, springs_;  ///< all of one pattern
-  Eigen::SparseMatrix<Complex> matrix_;
-  ComplexLdlt factor_;
+  AssembledStiffness stiffness_;
+  SparseMatrix sparse_;  ///< P [n x p]
+  Vector combination_;   ///< of the driven columns
+  Vector combined_;      ///< [n]
+  ComplexMatrix condensed_;
+  numerics::ComplexLdlt factor_;
 };
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
 
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,7 +12,6 @@
 namespace rubato::integrate {
 namespace {
 
-using Complex = std::complex<double>;
 using numerics::SparseComplexMatrix;
 
 constexpr double unit = std::numeric_limits<double>::epsilon();
@@ -23,74 +21,22 @@ constexpr double dense_share = 0.25;         // of entries that are not zero: mo
 constexpr double good_residual = 64 * unit;  // componentwise; LU with pivoting reaches a few units
 constexpr int most_refinements = 3;
 
-// Adds explicit zeros so that `matrix` has every entry of `pattern`, in its order.
-SparseMatrix on_pattern(const SparseMatrix& matrix, const SparseMatrix& pattern) {
-  SparseMatrix result = pattern;
-  std::fill(result.valuePtr(), result.valuePtr() + result.nonZeros(), 0.0);
-  for (Index column = 0; column < matrix.outerSize(); ++column)
-    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry)
-      result.coeffRef(entry.row(), column) += entry.value();
-  return result;
-}
-
-SparseMatrix joint_pattern(const SparseMatrix& a, const SparseMatrix& b, const SparseMatrix& c) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const SparseMatrix* matrix : {&a, &b, &c})
-    for (Index column = 0; column < matrix->outerSize(); ++column)
-      for (SparseMatrix::InnerIterator entry(*matrix, column); entry; ++entry) {
-        entries.emplace_back(entry.row(), column, 1.0);
-        entries.emplace_back(column, entry.row(), 1.0);
-      }
-  for (Index i = 0; i < a.rows(); ++i) entries.emplace_back(i, i, 1.0);
-  SparseMatrix pattern(a.rows(), a.cols());
-  pattern.setFromTriplets(entries.begin(), entries.end());
-  return pattern;
-}
-
 }  // namespace
 
-SparseMatrix stiffness_with(const system::LocallyNonlinear& system, const StuckSliders& stuck) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < stuck.size(); ++i) {
-    if (!stuck[i]) continue;
-    const auto& slider = system.sliders()[i];
-    if (slider.first != ground) entries.emplace_back(slider.first, slider.first, slider.stiffness);
-    if (slider.second != ground) entries.emplace_back(slider.second, slider.second, slider.stiffness);
-    if (slider.first == ground || slider.second == ground) continue;
-    entries.emplace_back(slider.first, slider.second, -slider.stiffness);
-    entries.emplace_back(slider.second, slider.first, -slider.stiffness);
-  }
-  SparseMatrix springs(system.size(), system.size());
-  springs.setFromTriplets(entries.begin(), entries.end());
-  return SparseMatrix(system.stiffness() + springs);
-}
-
 struct DynamicStiffness::Workspace {
-  Workspace(const system::LocallyNonlinear& system, const StuckSliders& stuck) {
-    assert(static_cast<Index>(stuck.size()) == system.slider_count());
-    const SparseMatrix k = stiffness_with(system, stuck);
-    const SparseMatrix pattern = joint_pattern(k, system.mass(), system.damping());
-    stiffness = on_pattern(k, pattern);
-    mass = on_pattern(system.mass(), pattern);
-    damping = on_pattern(system.damping(), pattern);
-    matrix = pattern.cast<Complex>();
-    terms = pattern;
-    const auto n = static_cast<double>(pattern.rows());
-    is_dense = pattern.rows() <= dense_size || static_cast<double>(pattern.nonZeros()) > dense_share * n * n;
-    if (!is_dense) ldlt.analyse(pattern);
+  Workspace(const system::LocallyNonlinear& system, const StuckSliders& stuck) : assembled(system, stuck) {
+    assembled.assemble_sizes(terms);
+    const auto n = static_cast<double>(assembled.size());
+    is_dense = assembled.size() <= dense_size || static_cast<double>(terms.nonZeros()) > dense_share * n * n;
+    if (!is_dense) ldlt.analyse(assembled.pattern());
   }
 
   void fill(double shift) {
-    const double* const k = stiffness.valuePtr();
-    const double* const m = mass.valuePtr();
-    const double* const c = damping.valuePtr();
-    for (Index p = 0; p < matrix.nonZeros(); ++p) {
-      matrix.valuePtr()[p] = {k[p] - omega * omega * m[p], omega * c[p]};
-      terms.valuePtr()[p] = std::abs(k[p]) + omega * omega * std::abs(m[p]) + omega * std::abs(c[p]);
-    }
-    scale = terms.diagonal();
+    assembled.assemble(omega, 1.0);
+    assembled.assemble_sizes(terms);
     if (shift == 0.0) return;
-    for (Index i = 0; i < matrix.rows(); ++i) matrix.coeffRef(i, i) += Complex(0.0, shift * scale[i]);
+    for (Index i = 0; i < matrix.rows(); ++i)
+      assembled.matrix().coeffRef(i, i) += Complex(0.0, shift * assembled.scale()[i]);
   }
 
   // False where the factor is that of a singular matrix.
@@ -106,6 +52,7 @@ struct DynamicStiffness::Workspace {
     const auto pivots = dense_lu.matrixLU().diagonal().cwiseAbs();
     return pivots.minCoeff() > 0.0 && std::isfinite(pivots.sum());
   }
+
   void factorise_safely() {
     // A shift of one unit of round-off turns zero pivots into small ones.
     for (double shift = unit; !factorise_with_pivoting() && shift < 1e-12; shift *= 4.0) fill(shift);
@@ -146,15 +93,16 @@ struct DynamicStiffness::Workspace {
     return x.allFinite() ? worst : std::numeric_limits<double>::infinity();
   }
 
-  SparseMatrix stiffness, mass, damping, terms;
-  SparseComplexMatrix matrix;
+  AssembledStiffness assembled;
+  const SparseComplexMatrix& matrix = assembled.matrix();
+  SparseMatrix terms;
   double omega = 0.0;
   bool is_dense = true;
   long pivoted = 0;
   Eigen::PartialPivLU<Eigen::MatrixXcd> dense_lu;
   numerics::ComplexLdlt ldlt;
   std::optional<Eigen::SparseLU<SparseComplexMatrix>> lu;
-  Vector scale, size;
+  Vector size;
   ComplexVector residual, correction, trial;
 };
 
@@ -179,7 +127,7 @@ void DynamicStiffness::factorise(double angular_frequency) {
   if (w.is_dense)
     w.factorise_safely();
   else
-    w.ldlt.factorise(w.matrix, w.scale);
+    w.ldlt.factorise(w.matrix, w.assembled.scale());
 }
 
 StiffnessSolution DynamicStiffness::solve(const ComplexVector& force, ComplexVector& x) {

@@ -1,13 +1,10 @@
 #pragma once
 
-#include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/integrate/steady/assembled_stiffness.hpp>
 
 #include <memory>
 
 namespace rubato::integrate {
-
-/// Which sliders of a structure are springs; the others are removed. All or none: its two linear limits.
-using StuckSliders = std::vector<bool>;
 
 /// What solving S x = f has shown.
 struct StiffnessSolution {
@@ -42,8 +39,5 @@ class DynamicStiffness {
   struct Workspace;
   std::unique_ptr<Workspace> work_;
 };
-
-/// K plus kT of the stuck sliders.
-SparseMatrix stiffness_with(const system::LocallyNonlinear& system, const StuckSliders& stuck);
 
 }  // namespace rubato::integrate

@@ -1,5 +1,7 @@
 #include <rubato/integrate/steady/equivalent_linear.hpp>
 
+#include <rubato/integrate/steady/assembled_stiffness.hpp>
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -10,7 +12,6 @@
 namespace rubato::integrate {
 namespace {
 
-using Complex = std::complex<double>;
 constexpr int most_rounds = 60;
 
 // Stiffness (real) and damping (imaginary) of a slider for u = amplitude cos(theta): the first harmonic of its loop.
@@ -25,8 +26,8 @@ Complex equivalent_stiffness(double stiffness, double limit, double amplitude) {
 
 // K - w^2 M + i w C with a complex stiffness of each slider; at w = 0 only its real part.
 ComplexMatrix dynamic_stiffness(const system::LocallyNonlinear& system, double w, const ComplexVector& of_sliders) {
-  ComplexMatrix dynamic = (Matrix(system.stiffness()) - w * w * Matrix(system.mass())).cast<Complex>();
-  dynamic += Complex(0.0, w) * Matrix(system.damping()).cast<Complex>();
+  ComplexMatrix dynamic =
+      assembled_stiffness(Matrix(system.stiffness()), Matrix(system.mass()), Matrix(system.damping()), w);
   for (Index i = 0; i < system.slider_count(); ++i) {
     const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
     const Complex k = w > 0.0 ? of_sliders[i] : Complex(of_sliders[i].real(), 0.0);
@@ -42,8 +43,43 @@ ComplexMatrix dynamic_stiffness(const system::LocallyNonlinear& system, double w
 
 }  // namespace
 
+namespace {
+
+constexpr double round_off = 1e-13;
+
+// The force that the sliders can hold against a motion: the sum of |b^T shape| limit.
+double friction_along(const system::LocallyNonlinear& system, const Excitation& excitation,
+                      const ComplexVector& shape) {
+  double taken = 0.0;
+  for (Index i = 0; i < system.slider_count(); ++i) {
+    const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
+    const Complex u = (slider.first == ground ? Complex(0.0) : shape[slider.first]) -
+                      (slider.second == ground ? Complex(0.0) : shape[slider.second]);
+    taken += std::abs(u) * excitation.limits[i];
+  }
+  return taken;
+}
+
+// A constant load on a motion that neither springs nor dampers resist, and that friction cannot hold.
+bool is_pushed_away(const system::LocallyNonlinear& system, const Excitation& excitation) {
+  if (excitation.constant.size() == 0 || excitation.constant.isZero(0.0)) return false;
+  const Matrix resistance = Matrix(system.stiffness()) + excitation.angular_frequency * Matrix(system.damping());
+  const Eigen::JacobiSVD<Matrix> values(resistance, Eigen::ComputeFullV);
+  for (Index k = 0; k < values.singularValues().size(); ++k) {
+    if (values.singularValues()[k] > round_off * resistance.norm()) continue;
+    const Vector shape = values.matrixV().col(k);
+    const double given = std::abs(shape.dot(excitation.constant));
+    if (given > round_off * excitation.constant.norm() &&
+        given > friction_along(system, excitation, shape.cast<Complex>()))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 bool is_driven_beyond_friction(const system::LocallyNonlinear& system, const Excitation& excitation) {
-  constexpr double round_off = 1e-13;
+  if (is_pushed_away(system, excitation)) return true;
   const ComplexVector none = ComplexVector::Zero(system.slider_count());
   return std::any_of(excitation.harmonics.begin(), excitation.harmonics.end(), [&](const LoadHarmonic& load) {
     const double w = load.order * excitation.angular_frequency;
@@ -54,13 +90,7 @@ bool is_driven_beyond_friction(const system::LocallyNonlinear& system, const Exc
       if (values.singularValues()[k] >= round_off * terms) continue;
       const ComplexVector shape = values.matrixV().col(k);
       const double given = std::numbers::pi * std::abs((shape.transpose() * load.amplitude)(0));
-      double taken = 0.0;
-      for (Index i = 0; i < system.slider_count(); ++i) {
-        const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
-        const Complex u = (slider.first == ground ? Complex(0.0) : shape[slider.first]) -
-                          (slider.second == ground ? Complex(0.0) : shape[slider.second]);
-        taken += 4.0 * std::abs(u) * excitation.limits[i];
-      }
+      const double taken = 4.0 * friction_along(system, excitation, shape);
       if (given > round_off * std::numbers::pi * load.amplitude.norm() && given >= taken) return true;
     }
     return false;

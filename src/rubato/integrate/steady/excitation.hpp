@@ -9,6 +9,7 @@
 
 namespace rubato::integrate {
 
+using Complex = std::complex<double>;
 using ComplexVector = Eigen::VectorXcd;
 using ComplexMatrix = Eigen::MatrixXcd;
 

@@ -1,11 +1,15 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/steady/harmonic_balance.hpp>
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
+#include <rubato/integrate/steady/orbit_search.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace rubato::integrate {
@@ -51,6 +55,7 @@ struct HarmonicBalanceSolver::Implementation {
 
   void forget() {
     past.clear();
+    equations.front().forget();
     remembered_offsets = Vector::Zero(stiffness.size());
     count_wanted = 1;
     // The basis of the loads has grown with those before; what is kept of it would show in the last digits.
@@ -75,6 +80,7 @@ struct HarmonicBalanceSolver::Implementation {
   void recover();
   void fill(const Excitation& excitation, SteadyResponse& response);
   void fill_unbounded(SteadyResponse& response) const;
+  bool walks(const Excitation& excitation, SteadyStart start, SteadyResponse& response);
   void load_on(int order, ComplexVector& load) const;
 
   const system::LocallyNonlinear& system;
@@ -106,6 +112,8 @@ struct HarmonicBalanceSolver::Implementation {
   ComplexMatrix left_out, forces_left_out, force_change;
   TurningPoints turning;
   bool is_unbounded = false;
+  std::optional<bool> may_walk;             ///< springs leave a motion free that sliders see; nothing: not yet known
+  std::unique_ptr<PeriodicSolver> walking;  ///< the last point, where it drifts
 };
 
 // --- loads ----------------------------------------------------------------------------------------------------------
@@ -196,12 +204,14 @@ bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harm
 }
 
 // Friction takes at most 4 |b^T phi| limit from a motion in a singular direction phi, each period and unit of
-// amplitude; the load gives pi |phi^T L|. More than that, and the amplitude grows for ever.
+// amplitude; the load gives pi |phi^T L|. More than that, and the amplitude grows for ever. A static load pushes with
+// |phi^T L| against |b^T phi| limit.
 bool HarmonicBalanceSolver::Implementation::is_driven_beyond_friction(const Excitation& excitation,
                                                                       double angular_frequency,
                                                                       const ComplexVector& load) {
   for (const auto& direction : structure.resonances(angular_frequency)) {
-    const double given = pi * std::abs((direction.loads.cast<Complex>().transpose() * load)(0));
+    const bool is_static = angular_frequency == 0.0;
+    const double given = (is_static ? 4.0 : pi) * std::abs((direction.loads.cast<Complex>().transpose() * load)(0));
     const double taken = 4.0 * direction.sliders.cwiseAbs().dot(excitation.limits);
     const double size = pi * direction.loads.norm() * load.norm();
     if (given > 1e-12 * size && given >= taken) return true;
@@ -443,6 +453,23 @@ void HarmonicBalanceSolver::Implementation::fill_unbounded(SteadyResponse& respo
   response.transitions = 0;
 }
 
+// A series cannot walk: where no series balances a structure that sliders alone hold, its motion over a period says
+// whether it drifts.
+bool HarmonicBalanceSolver::Implementation::walks(const Excitation& excitation, SteadyStart start,
+                                                  SteadyResponse& response) {
+  if (system.size() > largest_rigid || stiffness.size() == 0) return false;
+  if (!may_walk) may_walk = (numerics::all_modes(system.stiffness(), system.mass()).eigenvalues.array() == 0.0).any();
+  if (!*may_walk) return false;
+  auto solver = std::make_unique<PeriodicSolver>(system, request);
+  SteadyResponse motion;
+  solver->solve(excitation, start, motion);
+  if (motion.status != SteadyStatus::drifting) return false;
+  motion.iterations += response.iterations;
+  response = std::move(motion);
+  walking = std::move(solver);
+  return true;
+}
+
 void HarmonicBalanceSolver::Implementation::fill(const Excitation& excitation, SteadyResponse& response) {
   const auto& eq = equations.front();
   const Index o = structure.observed_count(), m = stiffness.size(), e = patterns.cols();
@@ -525,7 +552,9 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   response.iterations = 0;
   response.periods = 1;
   response.residual = response.error = 0.0;
+  response.drift.resize(0);
   s.last = excitation;
+  s.walking.reset();
   s.offsets = start == SteadyStart::previous ? s.remembered_offsets : Vector::Zero(s.stiffness.size());
   s.take_loads(excitation);
 
@@ -543,7 +572,7 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
     const int probes = s.orders_to_probe(excitation, orders);
     s.is_unbounded = !s.condense(excitation, stride, count + probes, !is_symmetric);
     if (s.is_unbounded) {
-      s.fill_unbounded(response);
+      if (!s.walks(excitation, start, response)) s.fill_unbounded(response);
       return;
     }
     if (is_first)
@@ -562,6 +591,10 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
     if (count >= most || !has_converged) break;
     count = std::min(most, more(count));
   }
+  if (response.status != SteadyStatus::converged && s.walks(excitation, start, response)) {
+    s.past.clear();
+    return;
+  }
   s.fill(excitation, response);
   if (response.status == SteadyStatus::converged) {
     if (s.past.size() < 3) s.past.emplace_back();
@@ -575,6 +608,7 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
 
 Waveform HarmonicBalanceSolver::waveform(int points) const {
   Implementation& s = *implementation_;
+  if (s.walking) return s.walking->waveform(points);
   const Index n = s.system.size(), m = s.stiffness.size();
   const double w = s.last.angular_frequency;
   Waveform wave;

@@ -27,6 +27,9 @@ struct HarmonicBalanceOptions {
 /// Orders are added until the estimated error is below the tolerance. The estimate is what the first orders left out
 /// would do: their own part in the observed coordinates and, through the Jacobian, the change of the orders kept.
 ///
+/// A series cannot walk: where a structure that sliders alone hold has no balance, the motion over a period says
+/// whether it drifts, and is the answer then (PeriodicSolver; up to 300 coordinates).
+///
 /// Newton starts from an extrapolation of the points before. Where it fails, the friction limits are lowered step by
 /// step from a value at which no slider slips, whose answer is linear.
 class HarmonicBalanceSolver final : public SteadySolver {

@@ -3,6 +3,7 @@
 #include <rubato/integrate/steady/condensed_structure.hpp>
 #include <rubato/integrate/steady/hysteresis_loop.hpp>
 #include <rubato/integrate/steady/small_lu.hpp>
+#include <rubato/numerics/gmres.hpp>
 
 #include <array>
 #include <vector>
@@ -29,6 +30,11 @@ struct SliderSeries {
 };
 
 /// U_k - U_k(linear) + R_k (F_k(U) - held kT U_k) = 0 for the sliders that have a limit, and Newton's method for it.
+///
+/// The Jacobian 1 + R dF is that of all unknowns, but its two factors are not: R joins the sliders of one order, dF the
+/// orders of one slider. A large one is therefore factorised seldom; the systems between are solved by products with
+/// the two factors (GMRES), with the last factorisation as its preconditioner: loops that have changed little since
+/// then change few of its eigenvalues.
 class HarmonicBalanceEquations {
  public:
   explicit HarmonicBalanceEquations(const Vector& stiffness) : stiffness_(stiffness) {
@@ -49,6 +55,9 @@ class HarmonicBalanceEquations {
   /// Improves a series; what it holds after a failure is the best found.
   Outcome solve(SliderSeries& series, double tolerance, int most_iterations);
 
+  /// Makes what follows independent of what was solved before.
+  void forget() { has_factor_ = false; }
+
   /// The loops and forces at the solution found.
   const std::vector<HysteresisLoop>& loops() const { return loops_; }
   const std::vector<Index>& active() const { return active_; }
@@ -62,9 +71,13 @@ class HarmonicBalanceEquations {
 
  private:
   double evaluate(const SliderSeries& series);
+  /// dF of every slider by its own unknowns, at the loops evaluated last.
+  void differentiate(const SliderSeries& series);
   void factorise(const SliderSeries& series);
-  void fill_jacobian(const SliderSeries& series, Matrix& jacobian);
-  void solve_linear(const SliderSeries& series, Vector& x);
+  void fill_jacobian(const SliderSeries& series, Matrix& jacobian) const;
+  void multiply_by_jacobian(const SliderSeries& series, const Vector& x, Vector& y);
+  void solve_linear(const SliderSeries& series, double tolerance, Vector& x);
+  bool is_large(const SliderSeries& series) const;
   Index rows_per_slider(const SliderSeries& series) const {
     return (series.has_mean ? 1 : 0) + 2 * series.orders.count;
   }
@@ -78,9 +91,15 @@ class HarmonicBalanceEquations {
   Vector mean_force_;
   Vector residual_, step_, left_;
   double left_part_ = 0.0;
-  ComplexMatrix columns_;
+  ComplexMatrix columns_;  ///< dF_k of the sliders [count x active rows]
+  Vector by_mean_;         ///< dF_0 [active rows]
   SmallLu factor_, own_factor_;
-  bool is_regular_ = true;
+  bool is_regular_ = true, has_factor_ = false;
+  std::vector<Index> factor_active_;
+  Orders factor_orders_;
+  numerics::Gmres gmres_;
+  Vector preconditioned_, product_;
+  ComplexMatrix changed_force_;
   SliderSeries trial_, best_;
   std::array<double, 4> recent_{};  ///< residuals of the last steps
   double displacement_ = 0.0, linear_ = 0.0;

@@ -8,8 +8,6 @@
 namespace rubato::integrate {
 namespace {
 
-using Complex = std::complex<double>;
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 // Where round-off of the matrices changes more than the third digit the response is that of a resonance without

@@ -9,8 +9,6 @@
 namespace rubato::integrate {
 namespace {
 
-using Complex = std::complex<double>;
-
 constexpr Index most_modes = 400;
 constexpr Index most_residual_vectors = 200;
 constexpr double reach = 2.0;          // modes up to so many times the highest frequency
@@ -104,10 +102,8 @@ struct ModalStiffness::Workspace {
   }
 
   ComplexVector project_and_solve(double omega, const ComplexVector& force) const {
-    Eigen::MatrixXcd s(basis.cols(), basis.cols());
-    s.real() = reduced_stiffness - omega * omega * reduced_mass;
-    s.imag() = omega * reduced_damping;
-    return in_basis(basis, Eigen::PartialPivLU<Eigen::MatrixXcd>(s).solve(onto(basis, force)));
+    const ComplexMatrix s = assembled_stiffness(reduced_stiffness, reduced_mass, reduced_damping, omega);
+    return in_basis(basis, Eigen::PartialPivLU<ComplexMatrix>(s).solve(onto(basis, force)));
   }
 
   // What the modes and the static stiffness answer to a residual.

@@ -125,7 +125,6 @@ void Orbit::measure_integrals(const Excitation& excitation, const SteadyRequest&
   static const Nodes node = Eigen::Map<const Nodes>(gauss.node.data());
   static const Nodes weight = Eigen::Map<const Nodes>(gauss.weight.data());
   static const Nodes offset = node - 0.5;
-  using Complex = std::complex<double>;
   const Index n = system_.size();
   const auto observed = static_cast<Index>(request.observed.size());
   const auto orders = static_cast<Index>(request.harmonics.size());

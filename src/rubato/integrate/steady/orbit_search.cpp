@@ -1,17 +1,24 @@
 #include <rubato/integrate/steady/orbit_search.hpp>
 
+#include <rubato/numerics/eigen_symmetric.hpp>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double round_off = 1e-13;
-
-constexpr int most_misled = 2;  // leaps, before the derivative of a period is measured
+constexpr double still = 1e-12;       // of the state: what a slider that kept its slip may have moved
+constexpr double surely_drifts = 10;  // times the tolerance, in a period
+constexpr int most_misled = 2;        // leaps, before the derivative of a period is measured
 
 enum class Next { rests, marches, leaps };
 
@@ -35,9 +42,10 @@ class Lane {
     double state, change, leap;             ///< norms of the state, of its change over the period, of the guessed step
     double observed_change, observed_leap;  ///< of what is observed [m]
     bool leap_is_distance;                  ///< else it is only the best that is known
+    double drift;                           ///< that was taken back
   };
   Next next(const Sizes& sizes) {
-    const auto& [scale, change, leap, observed_change, observed_leap, leap_is_distance] = sizes;
+    const auto& [scale, change, leap, observed_change, observed_leap, leap_is_distance, drift] = sizes;
     ++report.marched;
     is_misled = false;
     report.residual = change == 0.0 ? 0.0 : change / scale;
@@ -54,8 +62,9 @@ class Lane {
     }
     const bool is_near = report.distance <= 10.0 * options_.tolerance;
     if (report.residual <= options_.tolerance && (is_near || !extrapolates_)) {
-      if (++confirmed_ >= options_.confirmations && is_near) {
-        report.status = SteadyStatus::converged;
+      const bool drifts = drift > surely_drifts * options_.tolerance * scale;
+      if (++confirmed_ >= options_.confirmations && is_near && (drifts || drift <= options_.tolerance * scale)) {
+        report.status = drifts ? SteadyStatus::drifting : SteadyStatus::converged;
         is_done = true;
         return Next::rests;
       }
@@ -78,8 +87,8 @@ class Lane {
     return Next::marches;
   }
 
-  /// Without extrapolation only: does the state repeat after several periods?
-  bool finds_multiple(const Vector& state, double scale) {
+  /// Without extrapolation only: does the state repeat after several periods? Gives its change over those.
+  std::optional<Vector> find_multiple(const Vector& state, double scale) {
     history_.push_front(state);
     const auto longest = static_cast<std::size_t>(options_.max_multiple);
     if (history_.size() > longest + 1) history_.pop_back();
@@ -93,9 +102,9 @@ class Lane {
       report.multiple = static_cast<int>(k);
       report.residual = change / scale;
       is_done = true;
-      return true;
+      return history_[k] - state;
     }
-    return false;
+    return std::nullopt;
   }
 
   /// Without repetition after the last period: bounded, or growing without bound?
@@ -137,7 +146,6 @@ class Lane {
 
 // A slider that did not slip in the period keeps its slip: what is learnt from others is none of its business.
 void keep_slips(const PeriodMap& map, const LaneArray& after, const LaneArray& residuals, LaneArray& steps) {
-  constexpr double still = 1e-12;
   for (Index l = 0; l < steps.cols(); ++l) {
     const double scale = after.col(l).head(map.slip_start()).matrix().norm();
     for (Index i = map.slip_start(); i < map.slip_start() + map.slips(); ++i)
@@ -145,7 +153,43 @@ void keep_slips(const PeriodMap& map, const LaneArray& after, const LaneArray& r
   }
 }
 
+// Takes back what the state moved along rigid motions in a period; returns how far that was.
+double take_back_drift(const PeriodMap& map, const Matrix& rigid, const Vector& before, Eigen::Ref<Vector> after) {
+  if (rigid.cols() == 0) return 0.0;
+  const double scale = after.head(map.slip_start()).norm();
+  Matrix held = rigid.middleRows(map.slip_start(), map.slips());
+  for (Index i = 0; i < held.rows(); ++i)
+    if (std::abs(after[map.slip_start() + i] - before[map.slip_start() + i]) > still * scale) held.row(i).setZero();
+  const Eigen::FullPivLU<Matrix> holds(held);
+  if (holds.dimensionOfKernel() == 0) return 0.0;
+  const Eigen::HouseholderQR<Matrix> basis(holds.kernel());
+  const Matrix open = rigid * (basis.householderQ() * Matrix::Identity(rigid.cols(), holds.dimensionOfKernel()));
+  const Vector drift = open * (open.transpose() * (after - before));
+  after -= drift;
+  return drift.norm();
+}
+
 }  // namespace
+
+Matrix rigid_motions(PeriodMap& map, const system::LocallyNonlinear& system) {
+  Matrix motions(map.size(), 0);
+  if (system.size() > largest_rigid || system.slider_count() == 0) return motions;
+  const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
+  const Index count = (modes.eigenvalues.array() == 0.0).count();
+  if (count == 0) return motions;
+  motions.resize(map.size(), count);
+  LaneArray states(map.size(), 1);
+  system::State state = system.start();
+  map.encode(state, states, 0);
+  const Vector origin = states.col(0);
+  for (Index k = 0; k < count; ++k) {
+    state.q = system.start().q + modes.shapes.col(k);
+    map.encode(state, states, 0);
+    motions.col(k) = states.col(0).matrix() - origin;
+  }
+  const Eigen::HouseholderQR<Matrix> basis(motions);
+  return basis.householderQ() * Matrix::Identity(motions.rows(), count);
+}
 
 std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions& options,
                                        OrbitExtrapolation* extrapolation, LaneArray& states) {
@@ -153,12 +197,18 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
   std::vector<Lane> lanes(static_cast<std::size_t>(count), Lane(options, extrapolation != nullptr));
   LaneArray after, residuals, steps = LaneArray::Zero(states.rows(), count);
   std::vector<char> asks(lanes.size(), 0);
+  std::vector<double> drifts(lanes.size(), 0.0);
   if (extrapolation) extrapolation->begin(map, count);
   for (int period = 0; period < options.max_periods; ++period) {
     if (!map.advance(states, after, nullptr, 0)) {
       for (Lane& lane : lanes)
         if (!lane.is_done) lane.report.residual = infinity;
       break;
+    }
+    for (Index l = 0; l < count; ++l) {
+      Vector reached = after.col(l);
+      drifts[static_cast<std::size_t>(l)] = take_back_drift(map, options.rigid, states.col(l), reached);
+      after.col(l) = reached;
     }
     residuals = after - states;
     if (extrapolation) {
@@ -169,16 +219,23 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
     for (Index l = 0; l < count; ++l) {
       Lane& lane = lanes[static_cast<std::size_t>(l)];
       if (lane.is_done) continue;
-      const double scale = after.col(l).head(map.slip_start()).matrix().norm();
-      const Next next = lane.next({scale, residuals.col(l).matrix().norm(), steps.col(l).matrix().norm(),
-                                   map.observed_size(residuals, l), map.observed_size(steps, l),
-                                   extrapolation && extrapolation->knows_distance(l)});
+      // The larger of both ends: a motion from rest that repeats after several periods comes back to rest.
+      const double scale = std::max(after.col(l).head(map.slip_start()).matrix().norm(),
+                                    states.col(l).head(map.slip_start()).matrix().norm());
+      const Next next =
+          lane.next({scale, residuals.col(l).matrix().norm(), steps.col(l).matrix().norm(),
+                     map.observed_size(residuals, l), map.observed_size(steps, l),
+                     extrapolation && extrapolation->knows_distance(l), drifts[static_cast<std::size_t>(l)]});
       if (lane.is_misled) extrapolation->distrust(l);
       if (next == Next::leaps)
         states.col(l) += steps.col(l);
       else if (next == Next::marches)
         states.col(l) = after.col(l);
-      if (!extrapolation && !lane.is_done) lane.finds_multiple(after.col(l).matrix(), scale);
+      if (!extrapolation && !lane.is_done)
+        if (const auto rest = lane.find_multiple(after.col(l).matrix(), scale)) {
+          residuals.col(l) = *rest;
+          lane.report.observed_distance = map.observed_size(residuals, l);
+        }
       is_done = is_done && lane.is_done;
     }
     if (is_done) break;

@@ -128,7 +128,10 @@ Vector unresolved_ringing(const PeriodRecord& record) {
   for (Index i = 0; i < record.steps; ++i)
     turns[static_cast<std::size_t>(i)] = std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(i) / steps);
   for (Index row = 0; row < result.size(); ++row) {
-    const auto samples = record.position.row(row).head(record.steps);
+    // Less what it drifts, whose saw teeth ring at no order.
+    const double drift = record.position(row, record.steps) - record.position(row, 0);
+    const Vector samples = record.position.row(row).head(record.steps).transpose() -
+                           Vector::LinSpaced(record.steps, 0.0, drift * (1.0 - 1.0 / steps));
     const double mean = samples.mean();
     double rest = (samples.array() - mean).square().mean(), uncertain = 0.0;
     const double round_off = 1e-14 * rest;

@@ -5,6 +5,7 @@
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <fmt/format.h>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,7 @@ constexpr double offset_margin = 1e-10;  // by which a slider that never slips s
 constexpr double good_enough = 1e-10;    // residual that is accepted where round-off allows no smaller one
 constexpr double suspicious = 1e3;       // a step that much longer than the state: a resonance without damping?
 constexpr double fine_balance = 2e-11;   // of the works in a period
+constexpr double walking = 1e-9;         // drift over a period, relative to the state, that is none of round-off
 constexpr int most_halvings = 3, most_moves = 60, rest_periods = 20, longest_stretch = 64;
 
 double imbalance(const SteadyResponse& response) {
@@ -125,15 +127,28 @@ bool PeriodicSolver::pass(const Excitation& excitation) {
   difference_.head(n_) = sign * end_.q - y_.head(n_);
   difference_.segment(n_, n_) = sign * end_.v - y_.segment(n_, n_);
   difference_.tail(m_) = sign * end_.slider_force - y_.tail(m_);
+  drift_.setZero(n_);
+  if (!half_ && rigid_.cols() > 0) {
+    const Matrix open = open_motions();
+    drift_ = open * (open.transpose() * (system_.mass() * difference_.head(n_)));
+    difference_.head(n_) -= drift_;
+  }
   return difference_.allFinite();
 }
 
 double PeriodicSolver::residual(const Excitation& excitation) {
   const double size = size_of(excitation, y_), moved = size_of(excitation, difference_);
   double result = moved > 0.0 ? moved / size : 0.0;
+  if (const double drifted = drift(excitation); drifted <= walking) result = std::max(result, drifted);
   for (Index i = 0; i < m_; ++i)
     if (excitation.limits[i] > 0.0) result = std::max(result, std::abs(difference_[2 * n_ + i]) / excitation.limits[i]);
   return result;
+}
+
+// Over the period of the pass, relative to the state.
+double PeriodicSolver::drift(const Excitation& excitation) const {
+  const double squared = drift_.dot(system_.mass() * drift_);
+  return squared > 0.0 ? std::sqrt(squared) / size_of(excitation, y_) : 0.0;
 }
 
 // Newton's matrix at y_, from the pass just made.
@@ -160,17 +175,40 @@ void PeriodicSolver::factorise() {
   factors_.compute(matrix_);
 }
 
-// Where all sliders that hold a rigid motion slip, the orbit may lie anywhere along it: Newton's steps leave it in
-// place, in the metric of the mass.
-void PeriodicSolver::hold_rigid_motions() {
+// Rigid motions that no slider which sticks in the pass holds, phi^T M phi = 1 [n x any].
+Matrix PeriodicSolver::open_motions() const {
   Matrix held = Matrix::Zero(m_, rigid_.cols());
   for (Index i = 0; i < m_; ++i)
     if (!orbit_.slips(i))
       for (Index k = 0; k < rigid_.cols(); ++k) held(i, k) = system_.relative_displacement(i, rigid_.col(k));
   const Eigen::FullPivLU<Matrix> holds(held);
-  if (holds.dimensionOfKernel() == 0) return;
-  const Matrix open = rigid_ * holds.kernel();
+  const Index open = holds.dimensionOfKernel();
+  if (open == 0) return Matrix(n_, 0);
+  const Eigen::HouseholderQR<Matrix> basis(holds.kernel());
+  return rigid_ * (basis.householderQ() * Matrix::Identity(rigid_.cols(), open));
+}
+
+// The orbit may lie anywhere along an open motion: Newton's steps leave it in place, in the metric of the mass.
+void PeriodicSolver::hold_rigid_motions() {
+  const Matrix open = open_motions();
   matrix_.topLeftCorner(n_, n_) += open * (open.transpose() * Matrix(system_.mass()));
+}
+
+void PeriodicSolver::measure(const Excitation& excitation, SteadyResponse& response) {
+  orbit_.measure(excitation, request_, half_, response);
+  response.drift.resize(0);
+  if (response.status != SteadyStatus::drifting) return;
+  // The works of loads on a motion that repeats, and what they do on the drift: f x at the end of the period less that
+  // at its start.
+  Vector load = excitation.constant.size() > 0 ? excitation.constant : Vector::Zero(n_);
+  for (const LoadHarmonic& harmonic : excitation.harmonics) load += harmonic.amplitude.real();
+  response.input_work += load.dot(drift_);
+  response.drift.resize(response.mean.size());
+  for (Index o = 0; o < response.drift.size(); ++o) {
+    const auto& what = request_.observed[static_cast<std::size_t>(o)];
+    response.drift[o] = drift_[what.first] - (what.second == ground ? 0.0 : drift_[what.second]);
+    if (response.drift[o] != 0.0) response.mean[o] = response.rms[o] = std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 // Newton's step from y_, with the matrix last factorised. False at a resonance without damping.
@@ -271,6 +309,7 @@ void PeriodicSolver::report_unbounded(SteadyResponse& response) const {
   response.dissipated = response.slip_share = response.offset = Vector::Constant(m_, nan);
   response.viscous_work = response.input_work = nan;
   response.transitions = 0;
+  response.drift.resize(0);
 }
 
 double PeriodicSolver::observed_size(const Vector& y) const {
@@ -297,8 +336,8 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     known_.clear();
     return;
   }
-  response.status = converged ? SteadyStatus::converged : SteadyStatus::not_converged;
-  orbit_.measure(excitation, request_, half_, response);
+  if (converged) response.status = drift(excitation) > walking ? SteadyStatus::drifting : SteadyStatus::converged;
+  measure(excitation, response);
   // What the small rest of the residual does to the balance of a slightly damped structure.
   for (int polish = 0; converged && polish < 2 && imbalance(response) > fine_balance; ++polish) {
     factorise();
@@ -308,7 +347,7 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     put(y_ + correction_, excitation);
     if (!pass(excitation)) break;
     response.residual = residual(excitation);
-    orbit_.measure(excitation, request_, half_, response);
+    measure(excitation, response);
   }
   const double largest = response.amplitude.size() > 0 ? response.amplitude.maxCoeff() : 0.0;
   response.error = round_off;

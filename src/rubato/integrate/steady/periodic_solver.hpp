@@ -27,6 +27,11 @@ struct PeriodicOptions {
 /// a point to which those before do not lead. Where Newton does not come nearer, the flow itself is followed for some
 /// periods: with damping it always does.
 ///
+/// A structure that sliders alone hold may walk: P(y) = y + (phi, 0, 0) with phi a motion that no spring resists and
+/// every slider that sees it slips along. Newton's steps leave such motions in place and the residual does not count
+/// them, so that a walk is found as an orbit is. No other motion is steady then: friction, damping and springs never
+/// part two motions, and the walk goes on.
+///
 /// A slider that never slips leaves its offset fc - kT u free: it is the one that SteadyStart asks for, or the nearest
 /// with which it does not slip.
 ///
@@ -61,7 +66,10 @@ class PeriodicSolver final : public SteadySolver {
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
   void factorise();
+  Matrix open_motions() const;
   void hold_rigid_motions();
+  double drift(const Excitation& excitation) const;
+  void measure(const Excitation& excitation, SteadyResponse& response);
   void require_memory(const Excitation& excitation) const;
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
@@ -90,6 +98,7 @@ class PeriodicSolver final : public SteadySolver {
       centre_;  // of sliders that never slip; last: of all, at the last point
   Matrix matrix_;
   double fastest_ = 0.0;  // natural frequency without sliders [rad/s]
+  Vector drift_;          // part of P(y) - y along open motions [n] [m]; the difference is without it
   Matrix rigid_;          // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
   Eigen::PartialPivLU<Matrix> factors_;
   bool factors_are_of_orbit_ = false;

@@ -24,6 +24,7 @@ enum class SteadyStatus {
   subharmonic,     ///< it repeats after several periods only (see SteadyResponse::periods)
   quasi_periodic,  ///< bounded, and does not repeat
   unbounded,       ///< a resonance without damping: no finite response
+  drifting,        ///< it repeats but for a displacement (see SteadyResponse::drift): it walks over its sliders
 };
 
 /// What a slider that never slips in the period remembers: its force is kT u + offset with any small enough offset.
@@ -51,9 +52,12 @@ struct SteadyResponse {
   Vector offset;                                ///< fc - kT u where a slider never slips, else 0 [m] [N]
   double viscous_work = 0.0, input_work = 0.0;  ///< over a period [J]
   long transitions = 0;                         ///< stick to slip and back, in a period
+  /// Displacement of each observed over a period, where the status is drifting; else empty [o] [m]. The amplitudes are
+  /// then those of one period with it, and where it is not zero there is no mean and no RMS.
+  Vector drift;
 };
 
-/// Samples of a steady response at equal times over a period, the first at t = 0.
+/// Samples of a steady response at equal times over a period, the first at t = 0; of a drifting one, over the first.
 struct Waveform {
   Vector time;                        ///< [p] [s]
   Matrix position, velocity;          ///< of each coordinate [n x p] [m], [m/s]

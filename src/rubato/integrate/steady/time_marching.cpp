@@ -45,11 +45,18 @@ double difference(const SteadyResponse& a, const SteadyResponse& b) {
     return (r.rms.array().square() - r.mean.array().square()).max(0.0).sqrt().eval();
   };
   const double of_rms = std::numbers::sqrt2 * (swing(a) - swing(b)).abs().maxCoeff();
-  return std::max(of_amplitude, of_rms) / size;
+  const double of_drift = a.drift.size() > 0 && b.drift.size() > 0 ? (a.drift - b.drift).cwiseAbs().maxCoeff() : 0.0;
+  return std::max({of_amplitude, of_rms, of_drift}) / size;
 }
 
 bool is_repeating(SteadyStatus status) {
-  return status == SteadyStatus::converged || status == SteadyStatus::subharmonic;
+  return status == SteadyStatus::converged || status == SteadyStatus::subharmonic || status == SteadyStatus::drifting;
+}
+
+// The place of a structure that drifts says nothing.
+void leave_out_means(SteadyResponse& response) {
+  for (Index o = 0; o < response.drift.size(); ++o)
+    if (response.drift[o] != 0.0) response.mean[o] = response.rms[o] = not_a_number;
 }
 
 }  // namespace
@@ -70,6 +77,7 @@ struct TimeMarchingSolver::Engine {
   std::vector<PeriodRecord> records;
   int steps = 0;       // a period, of the states
   int next_steps = 0;  // that would have been enough
+  Matrix rigid;        // motions along which the states may be moved
 
   explicit Engine(std::unique_ptr<PeriodMap> given)
       : map(std::move(given)), extrapolation(make_extrapolation(map->size())) {}
@@ -190,6 +198,7 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excita
   OrbitSearchOptions search;
   search.tolerance = options_.periodicity;
   search.max_periods = options_.max_periods;
+  search.rigid = engine.rigid;
   const bool extrapolates = options_.extrapolates && start != SteadyStart::rest;
   const SteadyRequest& request = is_full ? request_ : amplitudes_;
   engine.records.resize(excitations.size());
@@ -222,6 +231,9 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excita
     bool has_changed = false, is_rough = false;
     for (std::size_t l = 0; l < orbits.size(); ++l) {
       read_record(engine.records[l], excitations[l], slider_stiffness_, responses[l].periods, request, responses[l]);
+      responses[l].drift.resize(0);
+      if (responses[l].status == SteadyStatus::drifting)
+        responses[l].drift = engine.records[l].position.col(steps) - engine.records[l].position.col(0);
       // What is observed may move far less than the rest of the structure.
       const double size = responses[l].amplitude.size() > 0 ? responses[l].amplitude.maxCoeff() : 0.0;
       responses[l].error = size > 0.0 ? caution_of_transient * responses[l].error / size : 0.0;
@@ -308,6 +320,7 @@ bool TimeMarchingSolver::solve_with(Engine& engine, std::span<const Excitation> 
   const std::size_t count = excitations.size();
   int steps = first_steps(engine, excitations);
   if (!engine.map->prepare(excitations, steps)) return false;
+  if (engine.rigid.rows() == 0) engine.rigid = rigid_motions(*engine.map, system_);
   engine.places.resize(count);
   LaneArray states;
   start_states(engine, excitations, start, states);
@@ -353,6 +366,7 @@ bool TimeMarchingSolver::solve_with(Engine& engine, std::span<const Excitation> 
     place.state = states.col(static_cast<Index>(l));
     place.offset = responses[l].offset;
     place.step_error = step_errors[l];
+    leave_out_means(responses[l]);
   }
   last_ = &engine;
   return true;

@@ -7,8 +7,6 @@
 
 namespace rubato::integrate {
 
-using Complex = std::complex<double>;
-
 /// The orders of a truncated Fourier series besides zero: 1, 1 + stride, 1 + 2 stride, ... (stride 2: odd ones only).
 struct Orders {
   int stride = 1;

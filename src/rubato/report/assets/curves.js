@@ -5,8 +5,8 @@ function quantity_label(table, index) {
   const variable = table.variables[index];
   const {excitation} = table.attributes;
   if (variable.name === "angular_frequency" && excitation) return `Angular frequency, ${excitation} [rad/s]`;
-  const is_parameter = table.curves && table.curves.keys.includes(index) && (!variable.unit || variable.unit === "1");
-  return is_parameter ? `${variable.name} [SI]` : axis_label(variable);
+  const tells_curves = table.curves && [table.curves.abscissa, ...table.curves.keys].includes(index);
+  return tells_curves && (!variable.unit || variable.unit === "1") ? `${variable.name} [SI]` : axis_label(variable);
 }
 
 /** 0.30000000000000004 as "0.3"; a word where the variable has words. */

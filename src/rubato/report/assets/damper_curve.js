@@ -175,10 +175,16 @@ function peaks_tracked_figure(table, main) {
 function optimum_distribution(table, optimum) {
   const at = optimum && variable_of(optimum, table.variables[table.curves.abscissa].name);
   if (!at || optimum.rows < 12) return null;
+  const kind = variable_of(optimum, "kind");
+  const is_flat = (row) => kind && kind.categories[optimum.overview[kind.index][0][row]] === "flat";
+  const places = optimum.overview[at.index][0].filter((_, row) => !is_flat(row));
+  const flat = optimum.overview[at.index][0].length - places.length;
+  if (places.length < 12) return null;
+  const without = flat ? ` ${count_text(flat)} of them do not depend on the parameter where they are best, and are left out.` : "";
   return make_figure({
-    caption: `Distribution of the optimum over ${count_text(optimum.rows)} cases.`, height: 340,
+    caption: `Distribution of the optimum over ${count_text(optimum.rows)} cases.${without}`, height: 340,
     draw: () => ({
-      traces: [{type: "histogram", x: optimum.overview[at.index][0], histnorm: "percent", nbinsx: 50, marker: {color: "#56a0d3", line: {color: "#ffffff", width: 0.5}},
+      traces: [{type: "histogram", x: places, histnorm: "percent", nbinsx: 50, marker: {color: "#56a0d3", line: {color: "#ffffff", width: 0.5}},
                 hovertemplate: "%{x}: %{y:.3~g} %<extra></extra>"}],
       layout: {xaxis: axis(`${at.name} [${parameter_unit(at)}]`), yaxis: axis("Share of the cases [%]"), bargap: 0},
     }),

@@ -74,7 +74,28 @@ function choice_list(chooser, choose) {
 }
 
 /**
- * A figure.
+ * The frame of a numbered figure: tools, the drawing, its caption and a button that saves it.
+ *
+ * render: draws; it is given {width, height, autosize} before printing and nothing otherwise.
+ */
+function frame_figure({drawing, caption, tools, file_kind, save, render, height, is_small = false}) {
+  const number = ++figure_count;
+  const title = `Download figure ${number} as ${file_kind}`;
+  const button = element("button", {type: "button", class: "save", title, "aria-label": title,
+                                    onclick: () => save(`figure-${number}`)}, `Download ${file_kind}`);
+  const figure = {height, is_small, is_drawn: false};
+  figure.node = element("figure", {id: `figure-${number}`}, tools, drawing, element(
+    "figcaption", {}, element("span", {}, element("b", {}, `Figure ${number}. `), caption), button));
+  figure.render = (size = {}) => {
+    figure.is_drawn = true;
+    return render(size);
+  };
+  figures.push(figure);
+  return figure;
+}
+
+/**
+ * A figure with axes.
  *
  * choosers: [{label, options: [text, ...]}]: rows of buttons, or a list to choose from where there are many; draw(chosen)
  * is given the index chosen in each.
@@ -82,37 +103,28 @@ function choice_list(chooser, choose) {
  * is_small: half the width of the page.
  */
 function make_figure({caption, draw, choosers = [], height = 380, is_small = false}) {
-  const number = ++figure_count;
   const chosen = choosers.map(() => 0);
-  const plot = element("div", {class: "plot", role: "img", "aria-label": caption, style: `height:${height}px`});
-  const save = element("button", {
-    type: "button", class: "save", title: `Download figure ${number} as SVG`, "aria-label": `Download figure ${number} as SVG`,
-    onclick: () => Plotly.downloadImage(plot, {format: "svg", filename: `figure-${number}`,
-                                               width: plot.clientWidth, height}),
-  }, "Download SVG");
+  const drawing = element("div", {class: "plot", role: "img", "aria-label": caption, style: `height:${height}px`});
   const tools = choosers.length === 0 ? null : element("div", {class: "tools"}, choosers.map((chooser, which) => {
     const choose = (index) => {
       chosen[which] = index;
-      render();
+      figure.render();
     };
     return is_long_choice(chooser) ? choice_list(chooser, choose) : choice_buttons(chooser, choose);
   }));
-  const node = element("figure", {id: `figure-${number}`}, ...(tools ? [tools] : []), plot, element(
-    "figcaption", {}, element("span", {}, element("b", {}, `Figure ${number}. `), caption), save));
 
-  function render(size = {}) {
+  function render(size) {
     const {traces, layout} = draw(chosen);
-    plot.style.height = `${size.height ?? height}px`;
+    drawing.style.height = `${size.height ?? height}px`;
     const config = {
       responsive: true, displaylogo: false, displayModeBar: "hover", doubleClick: "reset",
       modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage", "sendChartToCloud"],
     };
-    figure.is_drawn = true;
-    return Plotly.react(plot, traces, {...complete_layout(layout, height, is_small), ...size}, config);
+    return Plotly.react(drawing, traces, {...complete_layout(layout, height, is_small), ...size}, config);
   }
-  const figure = {node, render, height, is_small, is_drawn: false};
-  figures.push(figure);
-  return node;
+  const save = (filename) => Plotly.downloadImage(drawing, {format: "svg", filename, width: drawing.clientWidth, height});
+  const figure = frame_figure({drawing, caption, tools, file_kind: "SVG", save, render, height, is_small});
+  return figure.node;
 }
 
 function draw_all() {

@@ -8,6 +8,10 @@ function write_tables(chapter, tables, digits = 6) {
       continue;
     }
     const width = table.overview.reduce((sum, columns) => sum + columns.length, 0);
+    if (table.rows === 1 && table.variables.some((variable) => variable.dimension)) {
+      add_section(chapter, title, one_row_tables(table, digits));
+      continue;
+    }
     const body = [];
     const is_short = table.rows <= 60 && width <= 14;
     if (is_short) body.push(results_table(table, `${title}, ${count_text(table.rows)} rows.`, digits));
@@ -18,6 +22,23 @@ function write_tables(chapter, tables, digits = 6) {
     }
     add_section(chapter, title, body);
   }
+}
+
+/** A table of one row, such as a state of equilibrium: the quantities of each kind of thing beside its names. */
+function one_row_tables(table, digits) {
+  const variables = table.variables.map((variable, index) => ({index, ...variable}));
+  const dimensions = [...new Set(variables.map((variable) => variable.dimension).filter((dimension) => dimension))];
+  return dimensions.map((dimension) => {
+    const shown = variables.filter((variable) => variable.dimension === dimension && variable.labels.length);
+    if (shown.length === 0) return null;
+    const what = shown.map((variable) => variable.description).filter((text) => text).join("; ");
+    const [first] = shown;
+    return make_table({
+      caption: `${phrase(what || dimension)}.${shortened(first)}`,
+      columns: [{title: phrase(dimension), is_text: true}, ...shown.map((variable) => ({title: axis_label(variable)}))],
+      rows: first.labels.map((label, row) => [label, ...shown.map((variable) => number_node(table.overview[variable.index][row][0], digits))]),
+    });
+  }).filter((node) => node);
 }
 
 function generic_figure(table, variable) {

@@ -19,11 +19,15 @@ function what_became(analysis) {
                  message || "The results file does not say how this analysis ended; what it wrote is shown.");
 }
 
+// Attributes that have columns of their own, or are there for figures.
+const not_notes = ["type", "method", "solver", "step", "status", "message", "slider_stiffness", "slider_limit"];
+
 function write_summary(parent) {
   const chapter = add_chapter(parent, "Summary");
   const statistics = (analysis) => Object.entries(analysis.attributes)
-    .filter(([name]) => !["type", "method", "solver", "step", "status", "message", "slider_stiffness", "slider_limit"].includes(name))
-    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${value}`).join("; ");
+    .filter(([name, value]) => value !== "" && !not_notes.includes(name))
+    .map(([name, value]) => (/^(finding|warning)\d+$/.test(name) ? `${phrase(name.replace(/\d+$/, ""))}: ${value}`
+                                                                  : `${name.replaceAll("_", " ")}: ${value}`)).join("; ");
   chapter.node.append(...data.analyses.map(what_became).filter((node) => node));
   add_section(chapter, "Analyses", make_table({
     caption: "What was run and what became of it.",
@@ -49,6 +53,7 @@ function write_analysis(parent, analysis, index) {
   const chapter = add_chapter(parent, analysis.name, element("p", {class: "facts", id: `analysis-${index}`}, facts.join(" · "),
                                                              facts.length ? " " : "", badge(status)),
                               what_became(analysis));
+  write_scene(chapter, analysis);
   if (is_transient(analysis)) {
     write_transient(chapter, analysis);
     write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));

@@ -1,0 +1,72 @@
+#include <rubato/analysis/status_counts.hpp>
+
+#include <fmt/format.h>
+
+namespace rubato::analysis {
+
+const std::vector<std::string>& status_words() {
+  static const std::vector<std::string> words{"converged", "not_converged", "subharmonic", "quasi_periodic",
+                                              "unbounded", "impossible",    "drifting"};
+  return words;
+}
+
+PointStatus point_status(integrate::SteadyStatus status) {
+  switch (status) {
+    case integrate::SteadyStatus::converged:
+      return PointStatus::converged;
+    case integrate::SteadyStatus::not_converged:
+      return PointStatus::not_converged;
+    case integrate::SteadyStatus::subharmonic:
+      return PointStatus::subharmonic;
+    case integrate::SteadyStatus::quasi_periodic:
+      return PointStatus::quasi_periodic;
+    case integrate::SteadyStatus::unbounded:
+      return PointStatus::unbounded;
+    case integrate::SteadyStatus::drifting:
+      return PointStatus::drifting;
+  }
+  return PointStatus::not_converged;
+}
+
+void Tally::note(double place) {
+  count += 1.0;
+  if (first < 0.0) first = place;
+}
+
+void Tally::add(const Tally& other) {
+  count += other.count;
+  if (other.first >= 0.0 && (first < 0.0 || other.first < first)) first = other.first;
+}
+
+double StatusCounts::total() const {
+  double sum = 0.0;
+  for (const Tally& tally : by_status) sum += tally.count;
+  return sum;
+}
+
+void StatusCounts::add(const StatusCounts& other) {
+  for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i].add(other.by_status[i]);
+  negative_loads.add(other.negative_loads);
+}
+
+void StatusCounts::pack(std::vector<double>& values) const {
+  for (const Tally& tally : by_status) values.insert(values.end(), {tally.count, tally.first});
+  values.insert(values.end(), {negative_loads.count, negative_loads.first});
+}
+
+void StatusCounts::unpack(std::span<const double> values, std::size_t& at) {
+  const auto read = [&](Tally& tally) {
+    tally.count = values[at++];
+    tally.first = values[at++];
+  };
+  for (Tally& tally : by_status) read(tally);
+  read(negative_loads);
+}
+
+void StatusCounts::describe(std::vector<std::pair<std::string, std::string>>& statistics) const {
+  for (std::size_t i = 0; i < by_status.size(); ++i)
+    if (i == 0 || by_status[i].count > 0.0)
+      statistics.emplace_back(status_words()[i], fmt::format("{:.0f}", by_status[i].count));
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/integrate/estimators/response_scales.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace rubato::integrate {
+
+/// What estimators ask of the equations: how large a motion is, and how fast. A workspace: one a march.
+class ErrorSpace {
+ public:
+  virtual ~ErrorSpace() = default;
+
+  virtual Index size() const = 0;
+  /// M x, kept until the next call.
+  virtual const Vector& times_mass(const Vector& x) = 0;
+  /// Size of the displacements of a state in the mass norm [m sqrt(kg)]; 0 where they mean nothing.
+  virtual double displacement(const system::State& state) = 0;
+  /// Size that errors are measured by even where nothing has moved yet [m sqrt(kg)].
+  virtual double least_size() const { return 0.0; }
+  virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
+  virtual bool is_damped() const = 0;
+  /// x^T C x
+  virtual double damping(const Vector& x) = 0;
+
+  double squared(const Vector& x) { return x.dot(times_mass(x)); }
+  double norm(const Vector& x) { return std::sqrt(squared(x)); }
+};
+
+/// That of a structure; the system must outlive it.
+std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system);
+
+}  // namespace rubato::integrate

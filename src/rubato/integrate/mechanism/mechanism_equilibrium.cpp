@@ -1,0 +1,123 @@
+#include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr double first_shift = 1e-3, least_shift = 1e-12,
+                 most_shift = 1e6;  // over the stiffness per mass of the mechanism
+
+class Search {
+ public:
+  Search(system::MechanismEquations& equations, const system::State& given, const EquilibriumPlan& plan)
+      : equations_(equations), mechanism_(equations.mechanism()), plan_(plan) {
+    const Index n = mechanism_.size(), c = mechanism_.constraint_count();
+    found_.state = given;
+    found_.state.v = found_.state.acceleration = found_.state.auxiliary_acceleration = Vector::Zero(n);
+    found_.state.multiplier = Vector::Zero(c);
+    force_.resize(n);
+    product_.resize(n);
+    constraint_.resize(c);
+    next_ = given.q;
+    extent_ = std::max(given.q.size() > 0 ? given.q.cwiseAbs().maxCoeff() : 0.0, 1e-300);
+    reference_ =
+        mechanism_.reference() > 0.0 ? mechanism_.reference() : extent_ * std::sqrt(mechanism_.mass().diagonal().sum());
+  }
+
+  MechanismEquilibrium run() {
+    scale_ = stiffness_per_mass();
+    double shift = first_shift * scale_, last = HUGE_VAL;
+    for (found_.iterations = 0; found_.iterations < plan_.most_iterations; ++found_.iterations) {
+      system::State& state = found_.state;
+      equations_.go_to(state, model::Side::right);
+      equations_.linearise({shift, 0.0, 1.0, scale_}, state.multiplier, force_, constraint_);
+      equations_.add_constraint_force(state.multiplier, 1.0, force_);
+      found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
+      if (!std::isfinite(found_.residual)) return found_;
+      if (!equations_.factorise()) return found_;
+      if (!equations_.is_positive() && shift < most_shift * scale_) {
+        // Newton's method would climb: a larger shift leads downhill.
+        shift *= 10.0;
+        continue;
+      }
+      const double norm = force_norm();
+      force_ = -force_;
+      constraint_ = -constraint_;
+      equations_.solve(force_, constraint_);
+      const double share = longest_share();
+      mechanism_.times_mass(force_, product_);
+      const double size = std::sqrt(std::max(force_.dot(product_), 0.0));
+      if (!std::isfinite(size)) return found_;
+      mechanism_.retract(state.q, share * force_, next_);
+      std::swap(state.q, next_);
+      state.multiplier += share * constraint_;
+      if (share == 1.0 && size <= plan_.tolerance * reference_ && shift <= settled * scale_) {
+        found_.is_found = true;
+        found_.is_stable = equations_.is_positive();
+        return found_;
+      }
+      // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
+      const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
+      shift = std::max(least_shift * scale_, shift * (share == 1.0 ? std::min(fall, 0.5) : 1.0));
+      last = norm;
+    }
+    return found_;
+  }
+
+ private:
+  static constexpr double settled = 1e-6;  // a shift that leaves a linear convergence of soft modes to be waited for
+
+  /// Stiffness over mass of the mechanism in an arbitrary direction [1/s2], from a small motion along it.
+  double stiffness_per_mass() {
+    const Index n = mechanism_.size();
+    Vector along(n), before(n), after(n);
+    for (Index i = 0; i < n; ++i) along[i] = std::sin(1.0 + 2.4 * static_cast<double>(i));
+    const double step = 1e-6 * extent_;
+    system::State moved = found_.state;
+    equations_.go_to(found_.state, model::Side::right);
+    equations_.residual(before, constraint_);
+    mechanism_.retract(found_.state.q, step * along, moved.q);
+    equations_.go_to(moved, model::Side::right);
+    equations_.residual(after, constraint_);
+    mechanism_.times_mass(along, product_);
+    const double mass = along.dot(product_);
+    const double stiffness = std::abs((after - before).dot(along)) / step;
+    equations_.external_force(after);
+    const double loads = after.norm() * along.norm() / extent_;  // where only loads and constraints hold it
+    return std::max({stiffness, loads, 1e-300}) / mass;
+  }
+
+  double force_norm() const { return std::hypot(force_.norm(), scale_ * constraint_.norm()); }
+
+  /// The share of the correction that turns and shifts nothing too far.
+  double longest_share() const {
+    double turn = 0.0, way = 0.0;
+    for (Index i = 0; i < force_.size(); ++i) {
+      const bool is_rotation = mechanism_.model().is_rotation[static_cast<std::size_t>(i)] != 0;
+      double& largest = is_rotation ? turn : way;
+      largest = std::max(largest, std::abs(force_[i]));
+    }
+    double share = 1.0;
+    if (turn > plan_.largest_turn) share = std::min(share, plan_.largest_turn / turn);
+    if (way > plan_.largest_shift * extent_) share = std::min(share, plan_.largest_shift * extent_ / way);
+    return share;
+  }
+
+  system::MechanismEquations& equations_;
+  const system::Mechanism& mechanism_;
+  EquilibriumPlan plan_;
+  MechanismEquilibrium found_;
+  Vector force_, product_, constraint_, next_;
+  double extent_ = 1.0, reference_ = 1.0, scale_ = 1.0;
+};
+
+}  // namespace
+
+MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
+                                      const EquilibriumPlan& plan) {
+  return Search(equations, given, plan).run();
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <rubato/system/mechanism_equations.hpp>
+
+namespace rubato::integrate {
+
+/// How an equilibrium is looked for.
+struct EquilibriumPlan {
+  double tolerance = 1e-10;    ///< of the last correction, in the mass norm over the mechanism's reference [-]
+  double largest_turn = 0.5;   ///< of a correction [rad]
+  double largest_shift = 0.2;  ///< of a correction, over the extent of the mechanism [-]
+  int most_iterations = 400;
+};
+
+struct MechanismEquilibrium {
+  system::State state;  ///< at rest, with the multipliers that hold it; the best found where it is not one
+  bool is_found = false;
+  bool is_stable = false;  ///< no motion that the constraints leave goes downhill from it
+  int iterations = 0;
+  double residual = 0.0;  ///< largest force that is left [N], [N m]
+  Index worst = -1;       ///< its coordinate
+};
+
+/// The configuration in which nothing moves,  f(q, 0, t) + G^T multiplier = 0,  g(q, t) = 0,  near a given one.
+///
+/// Newton's method on K + shift M, whose shift falls with the residual (pseudo-transient continuation, Kelley and Keyes
+/// 1998) and grows where the matrix is not positive definite on the constraints: it leads downhill, across
+/// configurations in which the stiffness is singular, to an equilibrium that is stable, unless it begins in one that is
+/// not.
+/// @param given  t, configuration and phases count
+MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
+                                      const EquilibriumPlan& plan = {});
+
+}  // namespace rubato::integrate

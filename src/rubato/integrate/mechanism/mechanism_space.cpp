@@ -1,0 +1,78 @@
+#include <rubato/integrate/mechanism/mechanism_space.hpp>
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+class MechanismSpace final : public ErrorSpace {
+ public:
+  explicit MechanismSpace(const system::Mechanism& mechanism)
+      : mechanism_(mechanism),
+        equations_(mechanism),
+        product_(mechanism.size()),
+        moved_(mechanism.start()),
+        force_(mechanism.size()),
+        constraint_(mechanism.constraint_count()) {}
+
+  Index size() const override { return mechanism_.size(); }
+  const Vector& times_mass(const Vector& x) override {
+    mechanism_.times_mass(x, product_);
+    return product_;
+  }
+  double displacement(const system::State&) override { return 0.0; }
+  double least_size() const override {
+    return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
+  }
+
+  ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
+    ResponseScales result;
+    result.acceleration = norm(acceleration);
+    for (const Vector* shape : {&state.v, &acceleration}) {
+      const double length = norm(*shape);
+      if (!(length > 0.0)) continue;
+      const double omega = std::max(1.0 / duration, frequency(state, *shape, length));
+      result.frequency = std::max(result.frequency, omega);
+      result.size = std::max(result.size, shape == &state.v ? length / omega : length / (omega * omega));
+    }
+    return result;
+  }
+
+  // Dampers of joints change with the configuration: errors are not taken to be forgotten.
+  bool is_damped() const override { return false; }
+  double damping(const Vector&) override { return 0.0; }
+
+ private:
+  /// sqrt(x^T K x / x^T M x), K x from the forces at both ends of a small motion along x.
+  double frequency(const system::State& state, const Vector& x, double length) {
+    constexpr double small = 1e-6;
+    const double way = small * least_size() / length;
+    double work = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+      moved_ = state;
+      mechanism_.retract(state.q, (sign * way) * x, moved_.q);
+      equations_.go_to(moved_, model::Side::right);
+      equations_.residual(force_, constraint_);
+      equations_.add_constraint_force(state.multiplier, 1.0, force_);
+      work += sign * x.dot(force_);
+    }
+    const double quotient = work / (2.0 * way * length * length);
+    return quotient > 0.0 ? std::sqrt(quotient) : 0.0;
+  }
+
+  const system::Mechanism& mechanism_;
+  system::MechanismEquations equations_;
+  Vector product_;
+  system::State moved_;
+  Vector force_, constraint_;
+};
+
+}  // namespace
+
+std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism) {
+  return std::make_unique<MechanismSpace>(mechanism);
+}
+
+}  // namespace rubato::integrate

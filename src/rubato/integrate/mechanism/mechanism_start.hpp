@@ -1,0 +1,43 @@
+#pragma once
+
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::integrate {
+
+/// What it took to make a state consistent.
+struct ConsistentStart {
+  system::State state;
+  bool is_consistent = false;
+  double position_moved = 0.0;  ///< the largest change of a coordinate [m], [rad]
+  Index most_moved = -1;        ///< its place; -1: nothing moved
+  double velocity_changed = 0.0;
+  Index most_changed = -1;
+  double gap = 0.0;              ///< largest violation of the constraints that is left [m], [rad]
+  Index worst_row = -1;          ///< where
+  double energy_lost = 0.0;      ///< kinetic energy that the projection of the velocities took away [J]
+  std::vector<Index> redundant;  ///< rows of constraints that repeat others in this configuration
+};
+
+/// Moves a state onto the constraints: positions by Newton's method along M^-1 G^T, velocities by the projection
+///
+///   M (v - v_given) + G^T impulse = 0,   G v + dg/dt = 0
+///
+/// then accelerations and multipliers of equilibrium:  M a + f + G^T multiplier = 0,   G a + (dG/dt) v + ... = 0.
+/// Phases of locks are kept. What cannot be joined is told by `gap` and `worst_row`.
+/// @param side  which limit to take of loads that jump at the state's time
+ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given,
+                                model::Side side = model::Side::right);
+
+/// Writes acceleration and multiplier of equilibrium of a state that satisfies the constraints; the auxiliary
+/// acceleration becomes the same. Returns false where the matrix cannot be factorised.
+bool find_acceleration(system::MechanismEquations& equations, system::State& state, model::Side side);
+
+/// The auxiliary acceleration of a method that carries that at t + shift h: A = a + shift h da/dt, with da/dt from the
+/// accelerations at both ends of a short motion. Multipliers are of second order only with this start (Arnold, Bruels
+/// and Cardona 2015).
+void shift_acceleration(system::MechanismEquations& equations, system::State& state, double shifted_by);
+
+}  // namespace rubato::integrate

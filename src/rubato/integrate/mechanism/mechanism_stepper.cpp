@@ -1,0 +1,166 @@
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+class MechanismStepper final : public Stepper {
+ public:
+  MechanismStepper(const GeneralizedAlpha& method, const system::Mechanism& mechanism, const NewtonPlan& plan)
+      : p_(method),
+        plan_(plan),
+        mechanism_(mechanism),
+        equations_(mechanism),
+        travel_(mechanism.size()),
+        force_(mechanism.size()),
+        product_(mechanism.size()),
+        constraint_(mechanism.constraint_count()),
+        multiplier_(mechanism.constraint_count()) {
+    tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
+                                   : mechanism.reference() > 0.0 ? mechanism.reference()
+                                                                 : std::sqrt(mechanism.mass().diagonal().sum()));
+  }
+
+  void step_changes(system::State& state, double ratio) override {
+    if (p_.alpha_m == p_.alpha_f) return;
+    state.auxiliary_acceleration = state.acceleration + ratio * (state.auxiliary_acceleration - state.acceleration);
+  }
+
+  StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    const double mean = (1.0 - p_.alpha_f) / (1.0 - p_.alpha_m);
+    scale_ = mean * p_.beta * h * h;
+    to.t = t1;
+    to.phase = from.phase;
+    to.slider_force = from.slider_force;
+    to.multiplier = from.multiplier;
+    travel_ = h * from.v + (0.5 * h * h) * from.auxiliary_acceleration;
+    bool is_fresh = false;  // the factors are those of the last iterate
+    bool needs_factors = true;
+    double last = 0.0;
+    for (int iteration = 0; iteration < plan_.most_iterations; ++iteration) {
+      place(from, h, to);
+      equations_.go_to(to, model::Side::left);
+      if (needs_factors) {
+        equations_.linearise({1.0, mean * p_.gamma * h, scale_}, to.multiplier, force_, constraint_);
+        is_fresh = true;
+        if (!equations_.factorise()) return fault(StepOutcome::singular);
+        needs_factors = false;
+      } else {
+        equations_.residual(force_, constraint_);
+        is_fresh = false;
+      }
+      // Multipliers start from zero: what the constraints do not determine of them stays out.
+      if (iteration == 0)
+        to.multiplier.setZero();
+      else
+        equations_.add_constraint_force(to.multiplier, 1.0, force_);
+      mechanism_.times_mass(to.acceleration, product_);
+      force_ = -scale_ * (force_ + product_);
+      constraint_ = -constraint_;
+      equations_.solve(force_, constraint_);
+      mechanism_.times_mass(force_, product_);
+      const double size = std::sqrt(force_.dot(product_));
+      if (!std::isfinite(size)) return fault(StepOutcome::not_finite);
+      mechanism_.to_travel(travel_, force_);
+      travel_ += force_;
+      to.multiplier += (1.0 / scale_) * constraint_;
+      // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
+      const double ratio = iteration == 0 ? 1.0 : size / last;
+      const bool is_done =
+          iteration == 0 ? size <= round_off * tolerance_ : ratio < 1.0 && size * ratio / (1.0 - ratio) <= tolerance_;
+      if (is_done) return finish(from, h, to);
+      if (iteration > 0) {
+        if (is_fresh && ratio > 2.0) return fault(StepOutcome::not_converged);
+        needs_factors = ratio > 0.1;
+      }
+      last = size;
+    }
+    return fault(StepOutcome::not_converged);
+  }
+
+  int factorisations() const override { return equations_.factorisations(); }
+
+ private:
+  /// q, v and both accelerations of `to` for the travel dq.
+  void place(const system::State& from, double h, system::State& to) {
+    const double inverse = 1.0 / (p_.beta * h * h);
+    to.auxiliary_acceleration =
+        inverse * (travel_ - h * from.v - (h * h * (0.5 - p_.beta)) * from.auxiliary_acceleration);
+    to.v = from.v + h * ((1.0 - p_.gamma) * from.auxiliary_acceleration + p_.gamma * to.auxiliary_acceleration);
+    to.acceleration =
+        (1.0 / (1.0 - p_.alpha_f)) * ((1.0 - p_.alpha_m) * to.auxiliary_acceleration +
+                                      p_.alpha_m * from.auxiliary_acceleration - p_.alpha_f * from.acceleration);
+    mechanism_.retract(from.q, travel_, to.q);
+  }
+
+  StepReport finish(const system::State& from, double h, system::State& to) {
+    place(from, h, to);
+    if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite()) return {};
+    return fault(StepOutcome::not_finite);
+  }
+
+  /// The coordinate whose correction was not finite, or the largest.
+  StepReport fault(StepOutcome outcome) const {
+    Index worst = 0;
+    double largest = -1.0;
+    for (Index i = 0; i < force_.size(); ++i) {
+      if (!std::isfinite(force_[i])) return {outcome, i};
+      if (std::abs(force_[i]) > largest) {
+        largest = std::abs(force_[i]);
+        worst = i;
+      }
+    }
+    return {outcome, worst};
+  }
+
+  static constexpr double round_off = 1e-6;  // a first correction that small says that nothing moves
+
+  GeneralizedAlpha p_;
+  NewtonPlan plan_;
+  const system::Mechanism& mechanism_;
+  system::MechanismEquations equations_;
+  Vector travel_, force_, product_, constraint_, multiplier_;
+  double tolerance_ = 0.0, scale_ = 0.0;
+};
+
+}  // namespace
+
+double spectral_radius_at_infinity(const GeneralizedAlpha& p) {
+  // Roots of the characteristic polynomial of the step for omega h -> infinity, in A, h v and q: with f weighted by
+  // (1 - alpha_f) and alpha_f, one root is -alpha_f/(1 - alpha_f), the others those of
+  // beta x^2 + (1/2 + gamma - 2 beta) x + (1/2 - gamma + beta) = 0.
+  const double forces = std::abs(p.alpha_f / (1.0 - p.alpha_f));
+  const double b = 0.5 + p.gamma - 2.0 * p.beta, c = 0.5 - p.gamma + p.beta;
+  const double discriminant = b * b - 4.0 * p.beta * c;
+  const double kinematics =
+      discriminant < 0.0 ? std::sqrt(std::abs(c / p.beta)) : (std::abs(b) + std::sqrt(discriminant)) / (2.0 * p.beta);
+  return std::max(forces, kinematics);
+}
+
+std::unique_ptr<Stepper> make_mechanism_stepper(const Method& method, const system::Mechanism& mechanism,
+                                                const NewtonPlan& plan, bool force) {
+  const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
+  if (!alpha || !(alpha->beta > 0.0))
+    throw InvalidInput(
+        fmt::format("{} does not march mechanisms, whose equations are solved implicitly; take "
+                    "\"generalized_alpha\", \"hht\" or \"wbz\"",
+                    method.name));
+  const double radius = spectral_radius_at_infinity(*alpha);
+  constexpr double round_off = 1e-6;  // double roots are found to the square root of round-off
+  if (mechanism.constraint_count() > 0 && !force && !(radius < 1.0 - round_off))
+    throw InvalidInput(
+        fmt::format("{} with the spectral radius {:.4g} at infinite frequency does not march a mechanism with "
+                    "constraints: nothing damps their multipliers, which oscillate from step to step; take "
+                    "{{ name = \"hht\", alpha = -0.05 }} or {{ name = \"generalized_alpha\", rho_inf = 0.9 }}, or set "
+                    "allow_unstable = true",
+                    method.name, radius));
+  return std::make_unique<MechanismStepper>(*alpha, mechanism, plan);
+}
+
+}  // namespace rubato::integrate

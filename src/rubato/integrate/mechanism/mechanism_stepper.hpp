@@ -1,0 +1,39 @@
+#pragma once
+
+#include <rubato/integrate/method.hpp>
+#include <rubato/integrate/stepper.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <memory>
+
+namespace rubato::integrate {
+
+/// How far Newton's method goes in a step.
+struct NewtonPlan {
+  double tolerance = 1e-10;  ///< of the error left in the positions, in the mass norm over `reference` [-]
+  double reference = 0.0;    ///< l [m sqrt(kg)]; 0: the mechanism's, or of one metre and radian in every coordinate
+  int most_iterations = 20;
+};
+
+/// The generalized-alpha step of a mechanism with its constraints on positions (index 3; Arnold and Bruels 2007; on
+/// rotations Bruels, Cardona and Arnold 2012):
+///
+///   M a1 + f(q1, v1, t1) + G(q1)^T multiplier1 = 0,   g(q1) = 0
+///   (1 - alpha_m) A1 + alpha_m A0 = (1 - alpha_f) a1 + alpha_f a0
+///   dq = h v0 + h^2 ((1/2 - beta) A0 + beta A1),  q1 = q0 retracted by dq,  v1 = v0 + h ((1 - gamma) A0 + gamma A1)
+///
+/// a is the acceleration of equilibrium at the ends, A the auxiliary one. Newton's unknowns are positions and
+/// multipliers times beta h^2 (1 - alpha_f)/(1 - alpha_m): rows of M and G are then of one size whatever the step
+/// (Bottasso, Dopico and Trainelli 2008). Factors are kept while each iteration removes nine tenths of the error.
+/// Phases of locks stay as they are.
+///
+/// Throws InvalidInput for a method of another family and, with constraints, for one that does not damp: of
+/// spectral radius 1 at infinite frequency the multipliers oscillate without end.
+/// @param force  accept such a method nevertheless
+std::unique_ptr<Stepper> make_mechanism_stepper(const Method& method, const system::Mechanism& mechanism,
+                                                const NewtonPlan& plan = {}, bool force = false);
+
+/// The largest root of the step's characteristic polynomial for omega h -> infinity.
+double spectral_radius_at_infinity(const GeneralizedAlpha& method);
+
+}  // namespace rubato::integrate

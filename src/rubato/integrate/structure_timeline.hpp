@@ -1,0 +1,42 @@
+#pragma once
+
+#include <rubato/integrate/timeline.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::integrate {
+
+/// The timeline of a structure: rows of tables of loads, and its sliders, guard i watching slider i.
+///
+///   sticking   limit - |fc0 + kT (u - u0)|      the force reaches its limit
+///   slipping   +-du/dt, positive outward         the slip comes to rest
+///
+/// A slider at its limit slips if it moves outward, or if it is at rest and is accelerated outward.
+class StructureTimeline final : public Timeline {
+ public:
+  /// @param resolution  [s]: at rest is who would be so within this time
+  StructureTimeline(const system::LocallyNonlinear& system, double resolution);
+
+  std::vector<double> breakpoints(double from, double to) const override;
+  bool jumps_at(double t) override;
+  void restart(system::State& state) override;
+  bool pass(const system::State& before, system::State& state, double shift) override;
+  double resolution() const override { return resolution_; }
+  Crossing first_crossing(const system::State& from, const system::State& to, double least) override;
+  GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
+
+ private:
+  enum class Watch { nothing, limit, rest_after_positive, rest_after_negative };
+  struct Path;
+
+  Path path_of(Index slider, const system::State& from, const system::State& to) const;
+  Watch watch_of(Index slider, const system::State& from) const;
+
+  const system::LocallyNonlinear& system_;
+  double resolution_;
+  system::Loads loads_;
+  Vector left_, right_;
+  system::State beyond_;
+  system::EquilibriumAcceleration equilibrium_;
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <rubato/model/bodies/element.hpp>
+#include <rubato/model/joints/joint.hpp>
+#include <rubato/model/joints/plane_projection.hpp>
+#include <rubato/numerics/expression.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::model {
+
+/// The coordinate s that a joint in the plane leaves free: the angle between its nodes, or the way along a direction.
+struct PlaneCoordinate {
+  enum class Kind { angle, displacement };
+  Kind kind = Kind::angle;
+  PlaneProjection along;  ///< of an angle only the nodes are used
+  double zero = 0.0;      ///< subtracted from what the nodes say [rad] or [m]
+
+  std::vector<Index> places() const;
+  double value(const double* q) const;
+  void slope(const double* q, double* slope) const;                         ///< [6]
+  void curvature(const double* q, double weight, double* curvature) const;  ///< [6 x 6]
+  double rate(const Motion& motion) const;                                  ///< [rad/s] or [m/s]
+};
+
+/// Where a part stands in the phases of a lock.
+struct AtLock {
+  int lock = -1;           ///< of which; -1: always at work
+  bool is_engaged = true;  ///< at work while the lock is engaged, or while it is open
+  bool is_at_work(const Motion& motion) const { return lock < 0 || (motion.phase[lock] != 0) == is_engaged; }
+};
+
+/// The force -stiffness (s - rest) on s. @param stiffness  [N m/rad] or [N/m]
+std::unique_ptr<Element> make_joint_spring(std::string name, const PlaneCoordinate& s, double stiffness, double rest,
+                                           const AtLock& when = {});
+
+/// The force -damping s' on s. @param damping  [N m s/rad] or [N s/m]
+std::unique_ptr<Element> make_joint_damper(std::string name, const PlaneCoordinate& s, double damping,
+                                           const AtLock& when = {});
+
+/// A force on s by a formula of `angle` (or `displacement`), `rate` and `t`. Its slopes are central differences.
+/// Throws InvalidInput for a faulty formula.
+/// @param parameters  other names it may use
+std::unique_ptr<Element> make_joint_drive(std::string name, const PlaneCoordinate& s, const std::string& formula,
+                                          const numerics::Parameters& parameters, const AtLock& when = {});
+
+/// s = at while the lock is engaged; nothing while it is open. Row "lock" [N m] or [N].
+std::unique_ptr<Joint> make_lock_joint(std::string name, const PlaneCoordinate& s, double at, int lock);
+
+}  // namespace rubato::model

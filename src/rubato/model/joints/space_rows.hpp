@@ -1,0 +1,60 @@
+#pragma once
+
+#include <rubato/model/joints/space_point.hpp>
+
+#include <Eigen/Core>
+
+#include <variant>
+
+// Scalar functions of the configuration of two nodes in space, with their first and second derivatives by increments
+// (x, y, z in world axes, rotations in body axes) of the first node and then of the second. Constraints of joints, and
+// the coordinates that joints leave free, are made of them.
+namespace rubato::model {
+
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+/// A function with its gradient, and the derivative of its gradient (not symmetric: rotations do not commute).
+struct SpaceValue {
+  double value = 0.0;
+  Vector12 gradient = Vector12::Zero();
+  Matrix12 slope = Matrix12::Zero();
+};
+
+/// Two nodes at a moment, with points that move with them.
+struct SpacePair {
+  numerics::Vector3 position1, position2;  ///< of the nodes [m]
+  numerics::Matrix3 turn1, turn2;          ///< from body axes to those of the world
+  numerics::Vector3 offset1, offset2;      ///< of the points, in body axes [m]
+  numerics::Vector3 between;               ///< from the first point to the second, in world axes [m]
+};
+SpacePair pair_of(const double* q, const SpacePoint& first, const SpacePoint& second);
+
+/// along . (p2 - p1), `along` fixed in the world [m].
+struct WorldGap {
+  numerics::Vector3 along;
+};
+/// along . (p2 - p1), `along` fixed in the first node [m].
+struct BodyGap {
+  numerics::Vector3 along;
+};
+/// first . second, directions fixed in the first and in the second node [-].
+struct Alignment {
+  numerics::Vector3 first, second;
+};
+/// (|p2 - p1|^2 - length^2)/(2 length) [m].
+struct DistanceGap {
+  double length;
+};
+/// The angle by which the second node has turned about an axis that both share, right-handed about x cross y: from x of
+/// the first node to `start` of the second, in (-pi, pi] [rad]. Directions of length 1, x and y at a right angle.
+struct TurnAngle {
+  numerics::Vector3 x, y, start;
+};
+
+using SpaceRow = std::variant<WorldGap, BodyGap, Alignment, DistanceGap, TurnAngle>;
+
+/// @param result  overwritten
+void evaluate(const SpaceRow& row, const SpacePair& pair, SpaceValue& result);
+
+}  // namespace rubato::model

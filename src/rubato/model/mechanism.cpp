@@ -1,0 +1,94 @@
+#include <rubato/model/bodies/gyroscopic.hpp>
+#include <rubato/model/mechanism.hpp>
+
+#include <cmath>
+
+namespace rubato::model {
+
+Mechanism::Mechanism(int dimension_) : dimension(dimension_) {
+  MechanismNode still;
+  still.name = "ground";
+  still.place.fill(ground);
+  if (dimension == 3) still.numbers[3] = 1.0;
+  nodes.push_back(still);
+}
+
+Index Mechanism::add_node(const std::string& name, const std::array<double, 3>& position,
+                          const std::array<bool, 3>& is_free) {
+  MechanismNode node;
+  node.name = name;
+  node.place.fill(ground);
+  for (std::size_t i = 0; i < 3; ++i) {
+    node.numbers[i] = position[i];
+    if (!is_free[i]) continue;
+    const std::size_t axis = i < 2 ? i : 5;
+    node.place[axis] = size();
+    coordinates.push_back(name + "." + axis_names[axis]);
+    is_rotation.push_back(axis == 5);
+  }
+  nodes.push_back(node);
+  return static_cast<Index>(nodes.size()) - 1;
+}
+
+Index Mechanism::add_space_node(const std::string& name, const numerics::Vector3& position,
+                                const numerics::Rotation& rotation, const std::array<bool, 6>& is_free) {
+  MechanismNode node;
+  node.name = name;
+  node.place.fill(ground);
+  node.numbers = {position[0], position[1], position[2], rotation.w(), rotation.x(), rotation.y(), rotation.z()};
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!is_free[axis]) continue;
+    node.place[axis] = size();
+    coordinates.push_back(name + "." + axis_names[axis]);
+    is_rotation.push_back(model::is_rotation(axis));
+  }
+  nodes.push_back(node);
+  return static_cast<Index>(nodes.size()) - 1;
+}
+
+void Mechanism::add_space_body(Index node, double mass, const numerics::Matrix3& inertia) {
+  for (std::size_t axis = 0; axis < 3; ++axis) masses.push_back({node, node, axis, axis, mass});
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = i; j < 3; ++j) {
+      const double value = inertia(static_cast<Index>(i), static_cast<Index>(j));
+      if (value != 0.0) masses.push_back({node, node, 3 + i, 3 + j, value});
+    }
+  elements.push_back(make_gyroscopic_moment(nodes[static_cast<std::size_t>(node)].name, space_node(node), inertia));
+}
+
+SpaceNode Mechanism::space_node(Index node) const {
+  return {node * space_numbers, nodes[static_cast<std::size_t>(node)].place};
+}
+
+PlaneNode Mechanism::plane_node(Index node) const {
+  const auto& place = nodes[static_cast<std::size_t>(node)].place;
+  return {node * plane_numbers, {place[0], place[1], place[5]}};
+}
+
+PlanePoint Mechanism::plane_point(Index node, double x, double y) const {
+  const auto& at = nodes[static_cast<std::size_t>(node)].numbers;
+  const double c = std::cos(at[2]), s = std::sin(at[2]), dx = x - at[0], dy = y - at[1];
+  return {plane_node(node), {c * dx + s * dy, -s * dx + c * dy}};
+}
+
+int Mechanism::add_lock(Lock lock) {
+  const int index = static_cast<int>(locks.size());
+  if (lock.stiffness > 0.0) {
+    elements.push_back(make_joint_spring(lock.name, lock.s, lock.stiffness, lock.at, {index, true}));
+  } else {
+    lock.joint = static_cast<int>(joints.size());
+    joints.push_back(make_lock_joint(lock.name, lock.s, lock.at, index));
+  }
+  if (lock.damping > 0.0) elements.push_back(make_joint_damper(lock.name, lock.s, lock.damping, {index, true}));
+  locks.push_back(std::move(lock));
+  return index;
+}
+
+void Mechanism::add_mass(Index node, double mass, double inertia) {
+  masses.push_back({node, node, 0, 0, mass});
+  masses.push_back({node, node, 1, 1, mass});
+  if (dimension == 3) masses.push_back({node, node, 2, 2, mass});
+  if (inertia != 0.0) masses.push_back({node, node, 5, 5, inertia});
+}
+
+}  // namespace rubato::model

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <rubato/model/bodies/element.hpp>
+#include <rubato/model/joints/joint.hpp>
+#include <rubato/model/joints/lock.hpp>
+#include <rubato/model/joints/plane_point.hpp>
+#include <rubato/model/joints/space_point.hpp>
+#include <rubato/model/structure.hpp>
+#include <rubato/model/time_law.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::model {
+
+/// A node of a mechanism: a point with axes of its own.
+struct MechanismNode {
+  std::string name;
+  std::array<double, 7> numbers{};   ///< at the start: see Motion; the plane uses three
+  std::array<double, 6> velocity{};  ///< at the start, by the axes x, y, z, rx, ry, rz
+  std::array<Index, 6> place{};      ///< tangent coordinate of each axis; `ground` where fixed or absent
+};
+
+/// What it takes to accelerate one axis of a node because another moves: a symmetric pair counts once.
+struct MassEntry {
+  Index node = 0, other_node = 0;
+  std::size_t axis = 0, other_axis = 0;
+  double value = 0.0;  ///< [kg], [kg m] or [kg m2]
+};
+
+/// A force along an axis of the world, or a moment about it (in the plane), on a tangent coordinate.
+struct NodeForce {
+  Index coordinate = 0;
+  TimeLaw law;  ///< [N] or [N m]
+};
+
+/// The coordinate that a joint leaves free, for the results.
+struct JointCoordinate {
+  std::string name;  ///< of the joint
+  PlaneCoordinate s;
+};
+
+/// Nodes, what makes forces between them and what constrains them, with values for everything. Mass is constant: bodies
+/// have their node at the centre of mass, and angular velocities are those of body axes.
+struct Mechanism {
+  int dimension = 2;
+  std::vector<MechanismNode> nodes;      ///< the first is the ground
+  std::vector<std::string> coordinates;  ///< tangent coordinates, "NODE.x" [n]
+  std::vector<char> is_rotation;         ///< [n]
+  std::vector<MassEntry> masses;
+  std::vector<std::unique_ptr<Element>> elements;
+  std::vector<std::unique_ptr<Joint>> joints;
+  std::vector<JointCoordinate> joint_coordinates;
+  std::vector<Lock> locks;
+  std::vector<NodeForce> forces;
+  Axis gravity = Axis::Zero();  ///< [m/s2]
+  double reference = 0.0;       ///< characteristic size for error measures [m sqrt(kg)]; 0: none
+
+  explicit Mechanism(int dimension_ = 2);
+
+  Index size() const { return static_cast<Index>(coordinates.size()); }
+  int numbers_a_node() const { return dimension == 2 ? plane_numbers : space_numbers; }
+
+  /// Adds a node in the plane.
+  /// @param is_free  x, y, angle: which of them move
+  /// @return its index
+  Index add_node(const std::string& name, const std::array<double, 3>& position,
+                 const std::array<bool, 3>& is_free = {true, true, true});
+  /// Adds a node in space.
+  /// @param rotation  turns its axes into those of the world
+  /// @param is_free   x, y, z and the three body axes: which of them move
+  Index add_space_node(const std::string& name, const numerics::Vector3& position, const numerics::Rotation& rotation,
+                       const std::array<bool, 6>& is_free = {true, true, true, true, true, true});
+  /// Gives a node in space a body whose centre of mass it is: mass, inertia, and the gyroscopic moment.
+  /// @param inertia  in the axes of the node [kg m2]
+  void add_space_body(Index node, double mass, const numerics::Matrix3& inertia);
+  SpaceNode space_node(Index node) const;
+  PlaneNode plane_node(Index node) const;
+  /// The point of a node that lies at (x, y) of the world at the start.
+  PlanePoint plane_point(Index node, double x, double y) const;
+  /// A lock with the parts that make it: a spring and a damper, or a constraint. A latch with a stiffness keeps it for
+  /// good. What it turns off is made with AtLock{index, false}.
+  /// @return its index
+  int add_lock(Lock lock);
+  /// Mass, and in the plane a moment of inertia, at a node.
+  void add_mass(Index node, double mass, double inertia = 0.0);
+};
+
+}  // namespace rubato::model

@@ -1,0 +1,164 @@
+#include <rubato/numerics/kkt_factor.hpp>
+
+#include <Eigen/OrderingMethods>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace rubato::numerics {
+
+void KktFactor::order(Index first_row, std::span<const Entry> entries) {
+  std::vector<Eigen::Triplet<double>> pattern;
+  pattern.reserve(2 * entries.size() + static_cast<std::size_t>(size_));
+  for (const auto& [i, j] : entries) {
+    pattern.emplace_back(i, j, 1.0);
+    pattern.emplace_back(j, i, 1.0);
+  }
+  for (Index i = 0; i < size_; ++i) pattern.emplace_back(i, i, 1.0);
+  SparseMatrix matrix(size_, size_);
+  matrix.setFromTriplets(pattern.begin(), pattern.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(matrix, permutation);
+  std::vector<double> key(static_cast<std::size_t>(size_));
+  for (Index i = 0; i < size_; ++i) key[static_cast<std::size_t>(permutation.indices()[i])] = static_cast<double>(i);
+  for (const auto& [i, j] : entries) {
+    if ((i < first_row) == (j < first_row)) continue;
+    const auto row = static_cast<std::size_t>(std::max(i, j)), other = static_cast<std::size_t>(std::min(i, j));
+    key[row] = std::max(key[row], key[other] + 0.5);
+  }
+  std::vector<int> unknown(static_cast<std::size_t>(size_));
+  std::iota(unknown.begin(), unknown.end(), 0);
+  std::stable_sort(unknown.begin(), unknown.end(),
+                   [&](int a, int b) { return key[static_cast<std::size_t>(a)] < key[static_cast<std::size_t>(b)]; });
+  position_.resize(static_cast<std::size_t>(size_));
+  for (std::size_t place = 0; place < unknown.size(); ++place)
+    position_[static_cast<std::size_t>(unknown[place])] = static_cast<int>(place);
+}
+
+void KktFactor::find_factors(std::span<const Entry> entries) {
+  const auto n = static_cast<std::size_t>(size_);
+  std::vector<std::vector<int>> column(n);
+  for (const auto& [i, j] : entries) {
+    const int a = position_[static_cast<std::size_t>(i)], b = position_[static_cast<std::size_t>(j)];
+    if (a != b) column[static_cast<std::size_t>(std::min(a, b))].push_back(std::max(a, b));
+  }
+  const auto make_set = [](std::vector<int>& rows) {
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  };
+  // What a column leaves behind goes to the column of its first row (elimination tree).
+  for (auto& rows : column) {
+    make_set(rows);
+    if (rows.size() < 2) continue;
+    auto& parent = column[static_cast<std::size_t>(rows.front())];
+    parent.insert(parent.end(), rows.begin() + 1, rows.end());
+  }
+  start_.assign(1, 0);
+  row_.clear();
+  for (const auto& rows : column) {
+    row_.insert(row_.end(), rows.begin(), rows.end());
+    start_.push_back(static_cast<int>(row_.size()));
+  }
+  target_.clear();
+  for (const auto& rows : column)
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      const auto to = static_cast<std::size_t>(rows[b]);
+      auto at = row_.begin() + start_[to];
+      for (std::size_t a = b + 1; a < rows.size(); ++a) {
+        at = std::lower_bound(at, row_.begin() + start_[to + 1], rows[a]);
+        target_.push_back(static_cast<int>(at - row_.begin()));
+      }
+    }
+}
+
+void KktFactor::analyse(Index size, Index first_row, std::span<const Entry> entries, bool is_symmetric) {
+  size_ = size;
+  is_symmetric_ = is_symmetric;
+  order(first_row, entries);
+  find_factors(entries);
+  value_.assign(static_cast<std::size_t>(size_) + row_.size() * (is_symmetric ? 1 : 2) + 1, 0.0);
+  x_.resize(static_cast<std::size_t>(size_));
+}
+
+int KktFactor::slot(Index i, Index j) const {
+  const int a = position_[static_cast<std::size_t>(i)], b = position_[static_cast<std::size_t>(j)];
+  if (a == b) return a;
+  if (a < b && is_symmetric_) return spare_slot();
+  const auto column = static_cast<std::size_t>(std::min(a, b));
+  const auto end = row_.begin() + start_[column + 1];
+  const auto found = std::lower_bound(row_.begin() + start_[column], end, std::max(a, b));
+  assert(found != end && *found == std::max(a, b));
+  const int place = static_cast<int>(size_) + static_cast<int>(found - row_.begin());
+  return a > b ? place : place + static_cast<int>(row_.size());
+}
+
+void KktFactor::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
+
+bool KktFactor::factorise() {
+  const int n = static_cast<int>(size_);
+  double* const diagonal = value_.data();
+  double* const lower = diagonal + n;
+  double* const upper = is_symmetric_ ? lower : lower + row_.size();
+  const int* const start = start_.data();
+  const int* const row = row_.data();
+  const int* target = target_.data();
+  for (int j = 0; j < n; ++j) {
+    const double pivot = diagonal[j];
+    if (!(std::abs(pivot) > 1e-290 && std::abs(pivot) < 1e290)) return false;
+    const double inverse = 1.0 / pivot;
+    diagonal[j] = inverse;
+    const int end = start[j + 1];
+    if (is_symmetric_) {
+      for (int b = start[j]; b < end; ++b) {
+        const double scaled = lower[b] * inverse;
+        diagonal[row[b]] -= scaled * lower[b];
+        for (int a = b + 1; a < end; ++a) lower[*target++] -= scaled * lower[a];
+        lower[b] = scaled;
+      }
+      continue;
+    }
+    for (int b = start[j]; b < end; ++b) {
+      const double scaled = lower[b] * inverse, across = upper[b];
+      diagonal[row[b]] -= scaled * across;
+      for (int a = b + 1; a < end; ++a) {
+        lower[*target] -= lower[a] * inverse * across;
+        upper[*target++] -= scaled * upper[a];
+      }
+      lower[b] = scaled;
+    }
+  }
+  return true;
+}
+
+Index KktFactor::negative_pivots() const {
+  return static_cast<Index>(
+      std::count_if(value_.begin(), value_.begin() + size_, [](double pivot) { return pivot < 0.0; }));
+}
+
+void KktFactor::solve(double* x) const {
+  const int n = static_cast<int>(size_);
+  const double* const inverse = value_.data();
+  const double* const lower = inverse + n;
+  const double* const upper = is_symmetric_ ? lower : lower + row_.size();
+  double* const y = x_.data();
+  for (int i = 0; i < n; ++i) y[position_[static_cast<std::size_t>(i)]] = x[i];
+  for (int j = 0; j < n; ++j) {
+    const double now = y[j];
+    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
+      y[row_[static_cast<std::size_t>(p)]] -= lower[p] * now;
+  }
+  // Symmetric: U = D L^T; otherwise rows of U carry the pivots.
+  for (int j = n - 1; j >= 0; --j) {
+    double now = is_symmetric_ ? y[j] * inverse[j] : y[j];
+    double sum = 0.0;
+    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
+      sum += upper[p] * y[row_[static_cast<std::size_t>(p)]];
+    y[j] = is_symmetric_ ? now - sum : (now - sum) * inverse[j];
+  }
+  for (int i = 0; i < n; ++i) x[i] = y[position_[static_cast<std::size_t>(i)]];
+}
+
+}  // namespace rubato::numerics

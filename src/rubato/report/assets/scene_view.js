@@ -1,0 +1,155 @@
+// A structure at a moment: where its nodes and lines are, and how they look on a canvas.
+
+const scene_colors = {reference: "#b4bcc4", line: "#0b4f7c", node: "#1c242c", support: "#6c7680", trace: "#d55e00"};
+
+/** Motion of every node, six numbers each: displacements (or positions) along x, y, z and rotations about them. */
+function node_motion(scene, values) {
+  const motion = new Float64Array(6 * scene.names.length);
+  if (scene.is_absolute) {
+    scene.names.forEach((_, node) => scene.position.forEach((axis, i) => { motion[6 * node + i] = axis[node]; }));
+  }
+  const [nodes, axes] = scene.places;
+  values.forEach((value, place) => { motion[6 * nodes[place] + axes[place]] = value ?? 0; });
+  return motion;
+}
+
+/** Where a node is: its reference position and `scale` times its displacement. */
+function node_position(scene, motion, scale, node) {
+  const moved = [0, 1, 2].map((i) => motion[6 * node + i]);
+  return scene.is_absolute ? moved : moved.map((u, i) => scene.position[i][node] + scale * u);
+}
+
+/**
+ * Points along a line in the deformed structure. Displacements go along it with the rotations of its ends as slopes, as
+ * in a beam; without rotations, and where positions are absolute, it is straight.
+ */
+function line_points(scene, motion, scale, line) {
+  const [a, b] = [scene.lines[0][line], scene.lines[1][line]];
+  const ends = [node_position(scene, motion, scale, a), node_position(scene, motion, scale, b)];
+  const turns = (node) => [3, 4, 5].map((i) => motion[6 * node + i]);
+  const [ta, tb] = [turns(a), turns(b)];
+  if (scene.is_absolute || ![...ta, ...tb].some((turn) => turn !== 0)) return ends;
+  const axis = [0, 1, 2].map((i) => scene.position[i][b] - scene.position[i][a]);
+  const cross = ([x, y, z]) => [y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]];
+  const squared = axis.reduce((sum, x) => sum + x * x, 0);
+  const stretch = [0, 1, 2].reduce((sum, i) => sum + (motion[6 * b + i] - motion[6 * a + i]) * axis[i], 0) / squared;
+  const [sa, sb] = [cross(ta), cross(tb)].map((slope) => slope.map((s, i) => s + stretch * axis[i]));
+  const pieces = 8, points = [];
+  for (let piece = 0; piece <= pieces; ++piece) {
+    const x = piece / pieces, x2 = x * x, x3 = x2 * x;
+    points.push([0, 1, 2].map((i) => scene.position[i][a] + x * axis[i] + scale * (
+      (1 - 3 * x2 + 2 * x3) * motion[6 * a + i] + (x - 2 * x2 + x3) * sa[i] +
+      (3 * x2 - 2 * x3) * motion[6 * b + i] + (x3 - x2) * sb[i])));
+  }
+  return points;
+}
+
+/** Smallest and largest of each coordinate over points. */
+function bounding_box(points) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const point of points) {
+    for (let i = 0; i < 3; ++i) {
+      low[i] = Math.min(low[i], point[i]);
+      high[i] = Math.max(high[i], point[i]);
+    }
+  }
+  return {low, high, diagonal: Math.hypot(...high.map((x, i) => x - low[i]))};
+}
+
+const is_in_space = (scene) => scene.position[2].some((z) => z !== 0) || scene.places[1].includes(2);
+
+/** A view of points: x to the right and y up in the plane; in space z up, from a direction that may be turned. */
+function make_view(scene, box) {
+  const centre = box.low.map((x, i) => 0.5 * (x + box.high[i]));
+  const view = {in_space: is_in_space(scene), yaw: 0.6, pitch: 0.35, pixels: 1, origin: [0, 0]};
+  const turned = (point) => {
+    const [x, y, z] = point.map((value, i) => value - centre[i]);
+    if (!view.in_space) return [x, y];
+    const [c, s] = [Math.cos(view.yaw), Math.sin(view.yaw)], depth = c * y - s * x;
+    return [c * x + s * y, Math.cos(view.pitch) * z + Math.sin(view.pitch) * depth];
+  };
+  const half = view.in_space ? [0.5 * box.diagonal, 0.5 * box.diagonal] : [0, 1].map((i) => 0.5 * (box.high[i] - box.low[i]));
+  view.aspect = Math.max(half[1], 0.15 * half[0]) / Math.max(half[0], 0.15 * half[1], 1e-300);
+  /** Fits the box into a canvas of so many pixels. */
+  view.fit = (width, height) => {
+    const margin = 34;
+    view.pixels = Math.min((width - 2 * margin) / Math.max(2 * half[0], 1e-300), (height - 2 * margin) / Math.max(2 * half[1], 1e-300));
+    view.origin = [0.5 * width, 0.5 * height];
+  };
+  view.project = (point) => {
+    const [x, y] = turned(point);
+    return [view.origin[0] + view.pixels * x, view.origin[1] - view.pixels * y];
+  };
+  return view;
+}
+
+function draw_polyline(pen, points) {
+  pen.beginPath();
+  points.forEach(([x, y], i) => (i === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+  pen.stroke();
+}
+
+/** A mark under a supported node: a triangle, upon a line where it is clamped. */
+function draw_support(pen, [x, y], kind) {
+  const size = 9;
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.lineTo(x - 0.7 * size, y + size);
+  pen.lineTo(x + 0.7 * size, y + size);
+  pen.closePath();
+  if (kind === "held") pen.stroke(); else pen.fill();
+  if (kind === "clamped") draw_polyline(pen, [[x - size, y + size + 2], [x + size, y + size + 2]]);
+}
+
+/** A length that a person would choose for a scale bar of about so many pixels. */
+function round_length(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  return [5, 2, 1].map((digit) => digit * power).find((candidate) => candidate <= length) ?? power;
+}
+
+function draw_scale_bar(pen, view, height) {
+  const length = round_length(110 / view.pixels), pixels = length * view.pixels;
+  pen.strokeStyle = pen.fillStyle = scene_colors.node;
+  pen.lineWidth = 1;
+  draw_polyline(pen, [[14, height - 18], [14, height - 13], [14 + pixels, height - 13], [14 + pixels, height - 18]]);
+  pen.fillText(`${Number(length.toPrecision(2))} m`, 14 + pixels + 6, height - 11);
+}
+
+/** Draws the structure: where it was, thin and grey, where it is, supports, and the way that some nodes have gone. */
+function draw_scene(pen, scene, view, {motion, scale, traces, width, height}) {
+  pen.clearRect(0, 0, width, height);
+  pen.fillStyle = "#ffffff";
+  pen.fillRect(0, 0, width, height);
+  pen.lineJoin = "round";
+  pen.font = "12px sans-serif";
+  const lines = scene.lines[0].map((_, line) => line);
+  if (!scene.is_absolute) {
+    pen.strokeStyle = scene_colors.reference;
+    pen.lineWidth = 1;
+    const rest = new Float64Array(motion.length);
+    for (const line of lines) draw_polyline(pen, line_points(scene, rest, 0, line).map(view.project));
+  }
+  pen.strokeStyle = scene_colors.trace;
+  pen.lineWidth = 1.2;
+  for (const trace of traces) draw_polyline(pen, trace.map(view.project));
+  pen.strokeStyle = scene_colors.line;
+  for (const line of lines) {
+    pen.lineWidth = scene.kinds?.[line] === "body" ? 4.5 : 2.2;
+    draw_polyline(pen, line_points(scene, motion, scale, line).map(view.project));
+  }
+  pen.fillStyle = pen.strokeStyle = scene_colors.support;
+  pen.lineWidth = 1.2;
+  (scene.support ?? []).forEach((kind, node) => {
+    if (kind !== "free") draw_support(pen, view.project(node_position(scene, motion, scale, node)), kind);
+  });
+  if (scene.names.length <= 200) {
+    pen.fillStyle = scene_colors.node;
+    scene.names.forEach((_, node) => {
+      const [x, y] = view.project(node_position(scene, motion, scale, node));
+      pen.beginPath();
+      pen.arc(x, y, 2.4, 0, 2 * Math.PI);
+      pen.fill();
+    });
+  }
+  draw_scale_bar(pen, view, height);
+}

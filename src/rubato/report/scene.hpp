@@ -1,0 +1,39 @@
+#pragma once
+
+#include <rubato/report/results_tables.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rubato::report {
+
+/// A structure and how it moves.
+struct Scene {
+  std::vector<std::string> names;               ///< of the nodes, [p]
+  std::array<std::vector<double>, 3> position;  ///< reference positions along x, y and z, [p] each [m]
+  std::vector<std::string> support;             ///< "free", "held", "pinned", "clamped", [p] or empty
+  std::vector<double> first, second;            ///< nodes that each line joins, [lines]
+  std::vector<std::string> kinds;               ///< of the lines, or empty
+  bool is_absolute = false;                     ///< the values are positions instead of displacements
+
+  /// The degrees of freedom that the results hold: axes 0 to 2 are along x, y, z, 3 to 5 rotations about them. [d]
+  std::vector<std::size_t> place_node, place_axis;
+  std::vector<std::size_t> rows;               ///< of the main table, one a frame
+  std::vector<double> coordinate;              ///< their time [s]; of modes and static states a number
+  std::vector<std::vector<double>> values;     ///< [frames][d]
+  std::vector<std::vector<double>> imaginary;  ///< likewise, of complex modes; else empty
+};
+
+/// How much of the motion is read.
+struct SceneExtent {
+  std::size_t frames = 300;       ///< at most, evenly spread over time; of modes the first so many
+  std::size_t numbers = 250'000;  ///< at most, over all frames
+};
+
+/// The scene of an analysis, from its tables `nodes` and `lines` and its main table. Nothing for analyses without such
+/// tables, and where not every degree of freedom (attribute `degrees_of_freedom` of `nodes`) was kept.
+std::optional<Scene> read_scene(const AnalysisTables& analysis, const SceneExtent& extent = {});
+
+}  // namespace rubato::report

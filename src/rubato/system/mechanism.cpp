@@ -1,0 +1,119 @@
+#include <rubato/core/error.hpp>
+#include <rubato/numerics/rotations.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace rubato::system {
+namespace {
+
+void require_mass(const Vector& diagonal, const std::vector<std::string>& names) {
+  for (Index i = 0; i < diagonal.size(); ++i)
+    if (!(diagonal[i] > 0.0))
+      throw InvalidInput(fmt::format("\"{}\" is free and has no inertia ({}); give it a mass or an inertia, or fix it",
+                                     names[static_cast<std::size_t>(i)], diagonal[i]));
+}
+
+using numerics::Rotation;
+using numerics::Vector3;
+
+Rotation rotation_in(const Vector& q, Index first) { return {q[first], q[first + 1], q[first + 2], q[first + 3]}; }
+
+/// The entries of some places; 0 of those that are fixed.
+Vector3 part_of(const Vector& x, const std::array<Index, 3>& place) {
+  Vector3 part = Vector3::Zero();
+  for (std::size_t i = 0; i < 3; ++i)
+    if (place[i] != ground) part[static_cast<Index>(i)] = x[place[i]];
+  return part;
+}
+
+void put(const Vector3& part, const std::array<Index, 3>& place, Vector& x) {
+  for (std::size_t i = 0; i < 3; ++i)
+    if (place[i] != ground) x[place[i]] = part[static_cast<Index>(i)];
+}
+
+}  // namespace
+
+Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
+  const Index n = size();
+  std::vector<Eigen::Triplet<double>> entries;
+  weight_ = Vector::Zero(n);
+  const auto add = [&](Index row_node, std::size_t row_axis, Index column_node, std::size_t column_axis, double value) {
+    const Index row = model_.nodes[static_cast<std::size_t>(row_node)].place[row_axis];
+    const Index column = model_.nodes[static_cast<std::size_t>(column_node)].place[column_axis];
+    if (row == ground) return;
+    if (!model::is_rotation(column_axis)) weight_[row] += value * model_.gravity[static_cast<Index>(column_axis)];
+    if (column != ground) entries.emplace_back(row, column, value);
+  };
+  for (const auto& mass : model_.masses) {
+    add(mass.node, mass.axis, mass.other_node, mass.other_axis, mass.value);
+    if (mass.node == mass.other_node && mass.axis == mass.other_axis) continue;
+    add(mass.other_node, mass.other_axis, mass.node, mass.axis, mass.value);
+  }
+  mass_.resize(n, n);
+  mass_.setFromTriplets(entries.begin(), entries.end());
+  diagonal_ = mass_.diagonal();
+  require_mass(diagonal_, coordinates());
+  has_diagonal_mass_ = mass_.nonZeros() == n;
+  for (const auto& joint : model_.joints)
+    for (const std::string& row : joint->row_names()) rows_.push_back(joint->name() + "." + row);
+
+  const Index numbers = model_.numbers_a_node();
+  start_.q.resize(static_cast<Index>(model_.nodes.size()) * numbers);
+  start_.v = Vector::Zero(n);
+  number_.assign(static_cast<std::size_t>(n), 0);
+  for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+    const auto& node = model_.nodes[i];
+    const Index first = static_cast<Index>(i) * numbers;
+    for (Index j = 0; j < numbers; ++j) start_.q[first + j] = node.numbers[static_cast<std::size_t>(j)];
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      if (node.place[axis] == ground) continue;
+      start_.v[node.place[axis]] = node.velocity[axis];
+      const bool turns = model_.dimension == 3 && model::is_rotation(axis);
+      number_[static_cast<std::size_t>(node.place[axis])] =
+          turns ? -1 : first + (model::is_rotation(axis) ? 2 : static_cast<Index>(axis));
+    }
+    const std::array<Index, 3> turned{node.place[3], node.place[4], node.place[5]};
+    if (model_.dimension == 3 && turned != std::array<Index, 3>{ground, ground, ground})
+      turns_.push_back({first + 3, turned});
+  }
+  start_.slider_force.resize(0);
+  start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
+  start_.multiplier = Vector::Zero(constraint_count());
+  start_.phase.assign(model_.locks.size(), model::lock_open);
+}
+
+void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {
+  out = q;
+  for (Index i = 0; i < dq.size(); ++i)
+    if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) out[number] += dq[i];
+  for (const Turn& turn : turns_) {
+    const Rotation turned =
+        (rotation_in(q, turn.quaternion) * numerics::rotation_of(part_of(dq, turn.place))).normalized();
+    out.segment<4>(turn.quaternion) << turned.w(), turned.x(), turned.y(), turned.z();
+  }
+}
+
+void Mechanism::difference(const Vector& q, const Vector& to, Vector& dq) const {
+  for (Index i = 0; i < size(); ++i)
+    if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) dq[i] = to[number] - q[number];
+  for (const Turn& turn : turns_)
+    put(numerics::vector_of(rotation_in(q, turn.quaternion).conjugate() * rotation_in(to, turn.quaternion)), turn.place,
+        dq);
+}
+
+void Mechanism::to_travel(const Vector& travel, Vector& motion) const {
+  for (const Turn& turn : turns_)
+    put(numerics::inverse_tangent_of(part_of(travel, turn.place)) * part_of(motion, turn.place), turn.place, motion);
+}
+
+void Mechanism::times_mass(const Vector& x, Vector& out) const {
+  if (has_diagonal_mass_)
+    out = diagonal_.cwiseProduct(x);
+  else
+    out.noalias() = mass_ * x;
+}
+
+}  // namespace rubato::system

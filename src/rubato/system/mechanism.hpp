@@ -1,0 +1,64 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/mechanism.hpp>
+#include <rubato/system/state.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace rubato::system {
+
+/// The equations of a mechanism in redundant coordinates:
+///
+///   M a + f(q, v, t) + G(q, t)^T multiplier = 0,   g(q, t) = 0,   G = dg/dq
+///
+/// with the constant mass M [n x n], forces f = internal - external, and velocities in the tangent space of the
+/// configuration. q holds all numbers of all nodes (three a node in the plane, seven in space, the ground first), those
+/// of fixed axes too. Immutable; MechanismEquations evaluates it, one a thread.
+class Mechanism {
+ public:
+  /// Throws InvalidInput for a coordinate without mass.
+  explicit Mechanism(model::Mechanism model);
+
+  Index size() const { return model_.size(); }                                 ///< n
+  Index constraint_count() const { return static_cast<Index>(rows_.size()); }  ///< c
+  Index configuration_size() const { return start_.q.size(); }
+  const model::Mechanism& model() const { return model_; }
+  const SparseMatrix& mass() const { return mass_; }
+  bool has_diagonal_mass() const { return has_diagonal_mass_; }
+  const std::vector<std::string>& coordinates() const { return model_.coordinates; }
+  const std::vector<std::string>& rows() const { return rows_; }  ///< of constraints, "JOINT.x" [c]
+  /// The state at t = 0 as given: not yet consistent.
+  const State& start() const { return start_; }
+  double reference() const { return model_.reference; }
+  /// Constant external force: weights [n] [N].
+  const Vector& weight() const { return weight_; }
+
+  /// The configuration after a motion dq [n] from q: q + dq, exponential map for rotations.
+  void retract(const Vector& q, const Vector& dq, Vector& out) const;
+  /// The dq that leads from q to `to` along one retraction.
+  void difference(const Vector& q, const Vector& to, Vector& dq) const;
+  /// Turns a small motion in the tangent space at the end of `travel` into the change of `travel` that makes it:
+  /// T(rotation)^-1 of each node in space (Bruels, Cardona and Arnold 2012); in the plane they are the same.
+  void to_travel(const Vector& travel, Vector& motion) const;
+  /// M x
+  void times_mass(const Vector& x, Vector& out) const;
+
+ private:
+  model::Mechanism model_;
+  SparseMatrix mass_;
+  Vector diagonal_, weight_;
+  bool has_diagonal_mass_ = false;
+  std::vector<std::string> rows_;
+  struct Turn {
+    Index quaternion = 0;          // its first number in q
+    std::array<Index, 3> place{};  // tangent coordinates of the body axes, or `ground`
+  };
+  std::vector<Index> number_;  // of q to which a tangent coordinate is added; -1: one of a turn [n]
+  std::vector<Turn> turns_;    // of nodes in space that are free to
+  State start_;
+};
+
+}  // namespace rubato::system

@@ -1,0 +1,285 @@
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <algorithm>
+
+namespace rubato::system {
+namespace {
+
+constexpr double share = 1e-10;
+
+}  // namespace
+
+MechanismEquations::ElementPlace MechanismEquations::place_of(const std::vector<Index>& places) const {
+  ElementPlace result;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == ground) continue;
+    result.local.push_back(static_cast<int>(i));
+    result.place.push_back(places[i]);
+  }
+  return result;
+}
+
+MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(mechanism) {
+  const auto& model = mechanism.model();
+  std::size_t largest = 1, widest = 1;
+  for (const auto& element : model.elements) {
+    elements_.push_back(element->clone());
+    element_places_.push_back(place_of(element->places()));
+    largest = std::max(largest, element->places().size());
+  }
+  Index row = 0;
+  std::size_t entries = 0;
+  for (const auto& joint : model.joints) {
+    joints_.push_back(joint->clone());
+    JointPlace place;
+    static_cast<ElementPlace&>(place) = place_of(joint->places());
+    place.first_row = row;
+    place.jacobian_start = entries;
+    row += joint->rows();
+    entries += static_cast<std::size_t>(joint->rows()) * joint->places().size();
+    largest = std::max(largest, joint->places().size());
+    widest = std::max(widest, static_cast<std::size_t>(joint->rows()));
+    joint_places_.push_back(std::move(place));
+  }
+  forces_ = model.forces;
+  jacobian_.assign(entries, 0.0);
+  local_.assign(std::max(largest, widest), 0.0);
+  matrix_.assign(largest * largest, 0.0);
+  velocity_.assign(static_cast<std::size_t>(mechanism.size()) + 1, 0.0);
+  unknowns_.assign(static_cast<std::size_t>(mechanism.size() + mechanism.constraint_count()), 0.0);
+  const Vector diagonal = mechanism.mass().diagonal();
+  for (const double mass : diagonal) inverse_mass_.push_back(1.0 / mass);
+  analyse();
+}
+
+void MechanismEquations::analyse() {
+  const Index n = mechanism_.size(), size = n + mechanism_.constraint_count();
+  std::vector<numerics::KktFactor::Entry> entries;
+  const SparseMatrix& mass = mechanism_.mass();
+  for (Index column = 0; column < n; ++column)
+    for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry)
+      if (entry.row() >= column) entries.emplace_back(entry.row(), column);
+  bool is_symmetric = true;
+  const auto couple = [&](const std::vector<Index>& places) {
+    for (const Index i : places)
+      for (const Index j : places)
+        if (i >= j) entries.emplace_back(i, j);
+  };
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    couple(element_places_[e].place);
+    is_symmetric = is_symmetric && elements_[e]->has_symmetric_tangent();
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    couple(joint_places_[j].place);
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (const Index i : joint_places_[j].place) entries.emplace_back(n + joint_places_[j].first_row + r, i);
+    is_symmetric = is_symmetric && joints_[j]->has_symmetric_curvature();
+  }
+  factor_.analyse(size, n, entries, is_symmetric);
+
+  for (Index column = 0; column < n; ++column)
+    for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry) {
+      mass_slot_.push_back(factor_.slot(entry.row(), column));
+      mass_value_.push_back(entry.value());
+    }
+  const auto find_slots = [&](ElementPlace& place, std::size_t k) {
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      for (std::size_t j = 0; j < place.place.size(); ++j) {
+        const int slot = factor_.slot(place.place[i], place.place[j]);
+        if (slot == factor_.spare_slot()) continue;
+        place.matrix.slot.push_back(slot);
+        place.matrix.local.push_back(place.local[i] * static_cast<int>(k) + place.local[j]);
+      }
+  };
+  for (std::size_t e = 0; e < elements_.size(); ++e) find_slots(element_places_[e], elements_[e]->places().size());
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    JointPlace& place = joint_places_[j];
+    const auto k = joints_[j]->places().size();
+    find_slots(place, k);
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (std::size_t i = 0; i < place.place.size(); ++i) {
+        const Index row = n + place.first_row + r;
+        const int local = r * static_cast<int>(k) + place.local[i];
+        for (const int slot : {factor_.slot(row, place.place[i]), factor_.slot(place.place[i], row)}) {
+          if (slot == factor_.spare_slot()) continue;
+          place.jacobian.local.push_back(local);
+          place.jacobian.slot.push_back(slot);
+        }
+      }
+  }
+}
+
+void MechanismEquations::go_to(const State& state, model::Side side) {
+  std::copy(state.v.data(), state.v.data() + state.v.size(), velocity_.data() + 1);
+  motion_ = {state.t, side, state.q.data(), velocity_.data() + 1, state.phase.data()};
+}
+
+void MechanismEquations::scatter(const ElementPlace& place, const double* matrix, double weight) {
+  double* const values = factor_.values();
+  for (std::size_t i = 0; i < place.matrix.slot.size(); ++i)
+    values[place.matrix.slot[i]] += weight * matrix[place.matrix.local[i]];
+}
+
+void MechanismEquations::external_force(Vector& out) const {
+  out = mechanism_.weight();
+  for (const auto& force : forces_) out[force.coordinate] += model::value(force.law, motion_.t, motion_.side);
+}
+
+void MechanismEquations::elements_and_loads(Vector& force) {
+  external_force(force);
+  force = -force;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const ElementPlace& place = element_places_[e];
+    elements_[e]->force(motion_, local_.data());
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      force[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
+  }
+}
+
+void MechanismEquations::constraints(Vector& constraint) {
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    joints_[j]->constraint(motion_, constraint.data() + joint_places_[j].first_row,
+                           jacobian_.data() + joint_places_[j].jacobian_start);
+}
+
+void MechanismEquations::residual(Vector& force, Vector& constraint) {
+  elements_and_loads(force);
+  constraints(constraint);
+}
+
+void MechanismEquations::linearise(const Weights& weights, const Vector& multiplier, Vector& force,
+                                   Vector& constraint) {
+  factor_.set_zero();
+  ++factorisations_;
+  double* const values = factor_.values();
+  for (std::size_t i = 0; i < mass_slot_.size(); ++i) values[mass_slot_[i]] += weights.mass * mass_value_[i];
+  external_force(force);
+  force = -force;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const ElementPlace& place = element_places_[e];
+    elements_[e]->tangent(motion_, weights.stiffness, weights.damping, local_.data(), matrix_.data());
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      force[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
+    scatter(place, matrix_.data(), 1.0);
+  }
+  constraints(constraint);
+  const Index n = mechanism_.size();
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const double* const jacobian = jacobian_.data() + place.jacobian_start;
+    const std::size_t k = joints_[j]->places().size();
+    if (weights.stiffness != 0.0) {
+      joints_[j]->curvature(motion_, multiplier.data() + place.first_row, matrix_.data());
+      scatter(place, matrix_.data(), weights.stiffness);
+    }
+    for (std::size_t i = 0; i < place.jacobian.slot.size(); ++i)
+      values[place.jacobian.slot[i]] += jacobian[place.jacobian.local[i]];
+    const bool is_active = joints_[j]->is_active(motion_);
+    for (int r = 0; r < joints_[j]->rows(); ++r) {
+      double seen = 0.0;  // G M^-1 G^T of the row, by the diagonal of M
+      for (std::size_t i = 0; i < place.place.size(); ++i) {
+        const double entry = jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
+        seen += entry * entry * inverse_mass_[static_cast<std::size_t>(place.place[i])];
+      }
+      // An open lock says nothing: multiplier = 0.
+      values[factor_.slot(n + place.first_row + r, n + place.first_row + r)] -=
+          is_active && seen > 0.0 ? share * seen / (weights.constraint > 0.0 ? weights.constraint : weights.mass) : 1.0;
+    }
+  }
+}
+
+void MechanismEquations::add_constraint_force(const Vector& multiplier, double factor, Vector& out) const {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const double* const jacobian = jacobian_.data() + place.jacobian_start;
+    const std::size_t k = joints_[j]->places().size();
+    for (int r = 0; r < joints_[j]->rows(); ++r) {
+      const double value = factor * multiplier[place.first_row + r];
+      for (std::size_t i = 0; i < place.place.size(); ++i)
+        out[place.place[i]] +=
+            value * jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
+    }
+  }
+}
+
+void MechanismEquations::constraint_rate(const Vector& v, Vector& out) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const double* const jacobian = jacobian_.data() + place.jacobian_start;
+    const std::size_t k = joints_[j]->places().size();
+    joints_[j]->rate(motion_, out.data() + place.first_row);
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (std::size_t i = 0; i < place.place.size(); ++i)
+        out[place.first_row + r] +=
+            v[place.place[i]] * jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
+  }
+}
+
+void MechanismEquations::second_rate(Vector& out) {
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    joints_[j]->second_rate(motion_, out.data() + joint_places_[j].first_row);
+}
+
+void MechanismEquations::solve(Vector& x, Vector& y) {
+  const auto n = static_cast<std::size_t>(x.size());
+  std::copy(x.data(), x.data() + x.size(), unknowns_.data());
+  std::copy(y.data(), y.data() + y.size(), unknowns_.data() + n);
+  factor_.solve(unknowns_.data());
+  std::copy(unknowns_.data(), unknowns_.data() + n, x.data());
+  std::copy(unknowns_.data() + n, unknowns_.data() + n + static_cast<std::size_t>(y.size()), y.data());
+}
+
+MechanismEquations::Linearised MechanismEquations::linearised(const Vector& multiplier) {
+  std::vector<Eigen::Triplet<double>> damping, stiffness, jacobian;
+  const auto add = [&](const ElementPlace& place, std::size_t k, std::vector<Eigen::Triplet<double>>& entries) {
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      for (std::size_t j = 0; j < place.place.size(); ++j)
+        entries.emplace_back(
+            place.place[i], place.place[j],
+            matrix_[static_cast<std::size_t>(place.local[i]) * k + static_cast<std::size_t>(place.local[j])]);
+  };
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const std::size_t k = elements_[e]->places().size();
+    elements_[e]->tangent(motion_, 1.0, 0.0, local_.data(), matrix_.data());
+    add(element_places_[e], k, stiffness);
+    elements_[e]->tangent(motion_, 0.0, 1.0, local_.data(), matrix_.data());
+    add(element_places_[e], k, damping);
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const std::size_t k = joints_[j]->places().size();
+    double* const rows = jacobian_.data() + place.jacobian_start;
+    joints_[j]->constraint(motion_, local_.data(), rows);
+    joints_[j]->curvature(motion_, multiplier.data() + place.first_row, matrix_.data());
+    add(place, k, stiffness);
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (std::size_t i = 0; i < place.place.size(); ++i)
+        jacobian.emplace_back(place.first_row + r, place.place[i],
+                              rows[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])]);
+  }
+  const Index n = mechanism_.size();
+  Linearised result{SparseMatrix(n, n), SparseMatrix(n, n), SparseMatrix(mechanism_.constraint_count(), n)};
+  result.damping.setFromTriplets(damping.begin(), damping.end());
+  result.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
+  result.jacobian.setFromTriplets(jacobian.begin(), jacobian.end());
+  return result;
+}
+
+double MechanismEquations::stored_energy() const {
+  double energy = 0.0;
+  for (const auto& element : elements_) energy += element->stored_energy(motion_);
+  return energy;
+}
+
+void MechanismEquations::force_of(model::Element::Role role, Vector& out) {
+  out.setZero();
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    if (elements_[e]->role() != role) continue;
+    const ElementPlace& place = element_places_[e];
+    elements_[e]->force(motion_, local_.data());
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      out[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
+  }
+}
+
+}  // namespace rubato::system

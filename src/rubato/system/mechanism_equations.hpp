@@ -1,0 +1,100 @@
+#pragma once
+
+#include <rubato/numerics/kkt_factor.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace rubato::system {
+
+/// Evaluates the equations of a mechanism and solves with their matrix
+///
+///   [ mass M + damping C + stiffness (K + d(G^T multiplier)/dq)   G^T ]
+///   [ G                                                           -E  ]    C = df/dv, K = df/dq
+///
+/// whose E, a share of 1e-10 of what each row sees through M, lets constraints repeat each other: of the multipliers
+/// that make the same forces a solution has those of least norm, and iterations lose nothing else by it. A workspace:
+/// one a thread; nothing is allocated after the construction.
+class MechanismEquations {
+ public:
+  explicit MechanismEquations(const Mechanism& mechanism);
+
+  const Mechanism& mechanism() const { return mechanism_; }
+
+  /// Goes to a state; what follows is evaluated there. Reads t, q, v and the phases.
+  /// @param side  which limit to take of a load that jumps at t
+  void go_to(const State& state, model::Side side);
+
+  /// Writes f [n] and g [c].
+  void residual(Vector& force, Vector& constraint);
+  /// residual(), G, which the next product with it uses, and the matrix above, ready to be factorised.
+  struct Weights {
+    double mass = 1.0, damping = 0.0, stiffness = 0.0;
+    double constraint = 0.0;  ///< what E is a share of, over M; 0: the weight of mass
+  };
+  void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
+  /// Evaluates G alone, with g.
+  void constraints(Vector& constraint);
+  /// out += factor G^T multiplier, with the G evaluated last.
+  void add_constraint_force(const Vector& multiplier, double factor, Vector& out) const;
+  /// The derivative of g(q(t), t) in time: G v + dg/dt [c], with the G evaluated last.
+  void constraint_rate(const Vector& v, Vector& out);
+  /// What must be added to G a to make the second derivative of g in time [c].
+  void second_rate(Vector& out);
+
+  bool factorise() { return factor_.factorise(); }
+  /// Whether the last matrix was positive definite on the motions that the constraints leave (where it is symmetric).
+  bool is_positive() const { return factor_.negative_pivots() <= mechanism_.constraint_count(); }
+  /// Solves with the factors; (x, y) is overwritten by the solution.
+  void solve(Vector& x, Vector& y);
+  int factorisations() const { return factorisations_; }
+
+  /// The equations about the present configuration:  M a + C v + K q + G^T multiplier = 0,  G q = 0  for small motions.
+  struct Linearised {
+    SparseMatrix damping, stiffness;  ///< df/dv and d(f + G^T multiplier)/dq [n x n]
+    SparseMatrix jacobian;            ///< G; rows of open locks are empty [c x n]
+  };
+  Linearised linearised(const Vector& multiplier);
+
+  double stored_energy() const;  ///< of all elements where go_to() led, without gravity [J]
+  /// Forces of the elements of one role [n].
+  void force_of(model::Element::Role role, Vector& out);
+  /// External forces by laws of t, and gravity [n].
+  void external_force(Vector& out) const;
+
+ private:
+  struct Scatter {
+    std::vector<int> local, slot;  // of entries that exist
+  };
+  struct ElementPlace {
+    std::vector<int> local;    // of entries that move
+    std::vector<Index> place;  // their rows
+    Scatter matrix;
+  };
+  struct JointPlace : ElementPlace {
+    Index first_row = 0;
+    Scatter jacobian, transposed;    // entries of G [r x k]
+    std::size_t jacobian_start = 0;  // among jacobian_
+  };
+  ElementPlace place_of(const std::vector<Index>& places) const;
+  void analyse();
+  void scatter(const ElementPlace& place, const double* matrix, double weight);
+  void elements_and_loads(Vector& force);
+
+  const Mechanism& mechanism_;
+  std::vector<std::unique_ptr<model::Element>> elements_;
+  std::vector<std::unique_ptr<model::Joint>> joints_;
+  std::vector<model::NodeForce> forces_;
+  std::vector<ElementPlace> element_places_;
+  std::vector<JointPlace> joint_places_;
+  std::vector<int> mass_slot_;
+  std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
+  std::vector<double> jacobian_;                   // of all joints
+  std::vector<double> local_, matrix_, velocity_, unknowns_;
+  model::Motion motion_;
+  numerics::KktFactor factor_;
+  int factorisations_ = 0;
+};
+
+}  // namespace rubato::system

@@ -1,0 +1,133 @@
+#include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/model/joints/space_joints.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+// The heavy top of Geradin and Cardona (2001) with the data of Bruels and Cardona (2010): 15 kg, its centre of mass 1 m
+// along its second axis from a spherical joint to the ground, spinning at 150 rad/s about that axis.
+namespace rubato {
+namespace {
+
+using numerics::Matrix3;
+using numerics::Rotation;
+using numerics::Vector3;
+
+constexpr double mass = 15.0, gravity = 9.81;
+const Vector3 arm(0.0, 1.0, 0.0), spin(0.0, 150.0, -4.61538);
+const Vector3 inertia(0.234375, 0.46875, 0.234375);
+
+system::Mechanism heavy_top() {
+  model::Mechanism top(3);
+  top.gravity = {0.0, 0.0, -gravity};
+  const Index body = top.add_space_node("top", arm, Rotation::Identity());
+  top.add_space_body(body, mass, inertia.asDiagonal());
+  auto& node = top.nodes[std::size_t(body)];
+  const Vector3 velocity = spin.cross(arm);
+  for (Index i = 0; i < 3; ++i) {
+    node.velocity[std::size_t(i)] = velocity[i];
+    node.velocity[std::size_t(i + 3)] = spin[i];
+  }
+  top.joints.push_back(model::make_space_joint(model::SpaceJointKind::spherical, "foot",
+                                               {{top.space_node(0), Vector3::Zero()}, Matrix3::Identity()},
+                                               {{top.space_node(body), -arm}, Matrix3::Identity()}));
+  return system::Mechanism(std::move(top));
+}
+
+/// Euler's equations about the foot, (J + m (1 - y y^T)) omega' + omega x (...) = y x R^T m g, by Runge-Kutta steps so
+/// short that what is left is round-off: 1e-5 (150 rad/s * 1e-5 s)^4.
+struct Top {
+  Rotation turn = Rotation::Identity();
+  Vector3 omega = spin, rate = Vector3::Zero();
+
+  Vector3 acceleration(const Rotation& at, const Vector3& w) const {
+    const Vector3 about_foot = inertia + mass * Vector3(1.0, 0.0, 1.0);
+    const Vector3 weight = at.conjugate() * Vector3(0.0, 0.0, -mass * gravity);
+    return (arm.cross(weight) - w.cross(about_foot.cwiseProduct(w))).cwiseQuotient(about_foot);
+  }
+  /// The rotation by increments of the body: R' = R omega; the vector of a short step follows v' = T(v)^-1 omega.
+  void go(double end, double h) {
+    for (long i = 0, n = std::lround(end / h); i < n; ++i) {
+      const auto slope = [&](const Vector3& v, const Vector3& w) {
+        return std::pair<Vector3, Vector3>(numerics::inverse_tangent_of(v) * w,
+                                           acceleration(turn * numerics::rotation_of(v), w));
+      };
+      const auto [v1, w1] = slope(Vector3::Zero(), omega);
+      const auto [v2, w2] = slope(0.5 * h * v1, omega + 0.5 * h * w1);
+      const auto [v3, w3] = slope(0.5 * h * v2, omega + 0.5 * h * w2);
+      const auto [v4, w4] = slope(h * v3, omega + h * w3);
+      turn = (turn * numerics::rotation_of(h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4))).normalized();
+      omega += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
+    }
+    rate = acceleration(turn, omega);
+  }
+  Vector3 position() const { return turn * arm; }
+  /// The force of the joint on the foot: m (g - a).
+  Vector3 reaction() const {
+    const Vector3 a = turn * (rate.cross(arm) + omega.cross(omega.cross(arm)));
+    return mass * (Vector3(0.0, 0.0, -gravity) - a);
+  }
+};
+
+struct Errors {
+  double position, turn, velocity, omega, reaction, gap;
+};
+
+Errors errors_at(double h, double end, const Top& exact) {
+  const system::Mechanism mechanism = heavy_top();
+  const auto method = integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}});
+  const auto stepper = integrate::make_mechanism_stepper(method, mechanism);
+  system::MechanismEquations equations(mechanism);
+  const auto start = integrate::make_consistent(equations, mechanism.start());
+  EXPECT_TRUE(start.is_consistent);
+  EXPECT_EQ(start.most_moved, -1);
+  EXPECT_EQ(start.most_changed, -1);
+  system::State state = start.state;
+  const auto& alpha = std::get<integrate::GeneralizedAlpha>(method.formula);
+  integrate::shift_acceleration(equations, state, (alpha.alpha_m - alpha.alpha_f) * h);
+  EXPECT_EQ(integrate::march(*stepper, state, h, end).end, integrate::MarchEnd::reached);
+  equations.go_to(state, model::Side::left);
+  Vector force(6), gap(3);
+  equations.residual(force, gap);
+  const Rotation turn(state.q[10], state.q[11], state.q[12], state.q[13]);
+  EXPECT_NEAR(turn.norm(), 1.0, 1e-15);
+  return {(state.q.segment<3>(7) - exact.position()).norm(),
+          numerics::vector_of(exact.turn.conjugate() * turn).norm(),
+          (state.v.head<3>() - exact.turn * exact.omega.cross(arm)).norm(),
+          (state.v.tail<3>() - exact.omega).norm(),
+          (state.multiplier - exact.reaction()).norm(),
+          gap.norm()};
+}
+
+TEST(HeavyTop, StartsWithTheReactionOfItsJoint) {
+  const system::Mechanism mechanism = heavy_top();
+  system::MechanismEquations equations(mechanism);
+  const auto start = integrate::make_consistent(equations, mechanism.start());
+  ASSERT_TRUE(start.is_consistent);
+  Top exact;
+  exact.go(0.0, 1e-5);
+  EXPECT_LT((start.state.multiplier - exact.reaction()).norm(), 1e-10 * exact.reaction().norm());
+  EXPECT_LT((start.state.acceleration.tail<3>() - exact.rate).norm(), 1e-10 * exact.rate.norm());
+}
+
+TEST(HeavyTop, ConvergesWithSecondOrderInMotionAndReaction) {
+  Top exact;
+  const double end = 0.2;
+  exact.go(end, 1e-5);
+  const Errors coarse = errors_at(1e-3, end, exact), fine = errors_at(5e-4, end, exact);
+  const auto order = [](double a, double b) { return std::log2(a / b); };
+  EXPECT_NEAR(order(coarse.position, fine.position), 2.0, 0.2);
+  EXPECT_NEAR(order(coarse.turn, fine.turn), 2.0, 0.2);
+  EXPECT_NEAR(order(coarse.velocity, fine.velocity), 2.0, 0.2);
+  EXPECT_NEAR(order(coarse.omega, fine.omega), 2.0, 0.2);
+  EXPECT_NEAR(order(coarse.reaction, fine.reaction), 2.0, 0.3);
+  EXPECT_LT(fine.position, 1e-2);
+  EXPECT_LT(fine.gap, 1e-12);
+}
+
+}  // namespace
+}  // namespace rubato

@@ -1,0 +1,140 @@
+#include "support/models.hpp"
+
+#include <rubato/integrate/steady/harmonic_balance.hpp>
+#include <rubato/integrate/steady/periodic_solver.hpp>
+#include <rubato/integrate/steady/time_marching.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+
+namespace rubato::integrate {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double limit = 0.2, dashpot = 0.5, frequency = 2.0, period = 2.0 * pi / frequency;
+
+/// A mass of 1 kg on a dashpot, held by one slider alone.
+system::LocallyNonlinear mass_on_a_slider(std::vector<system::LoadTerm> loads, double damping = dashpot) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = testing::sparse(damping * Matrix::Identity(1, 1));
+  parts.stiffness = testing::sparse(Matrix::Zero(1, 1));
+  parts.sliders = {{"contact", 0, ground, 10.0, limit}};
+  parts.loads = system::Loads(std::move(loads));
+  parts.coordinates = {"mass"};
+  return system::LocallyNonlinear(std::move(parts));
+}
+
+struct Route {
+  std::string name;
+  double tolerance;  ///< of amplitudes and drifts
+};
+const Route routes[] = {{"periodic", 1e-9}, {"harmonic_balance", 1e-3}, {"time_marching", 1e-3}};
+
+SteadyResponse respond(const std::string& route, const system::LocallyNonlinear& system) {
+  const SteadyRequest request{{{0}}, {1}, true};
+  std::unique_ptr<SteadySolver> solver;
+  if (route == "periodic")
+    solver = std::make_unique<PeriodicSolver>(system, request);
+  else if (route == "harmonic_balance")
+    solver = std::make_unique<HarmonicBalanceSolver>(system, request);
+  else
+    solver = std::make_unique<TimeMarchingSolver>(system, TimeMarchingOptions{}, request);
+  SteadyResponse response;
+  solver->solve(excitation_of(system), SteadyStart::unloaded, response);
+  return response;
+}
+
+// Once it slides and never turns, m v' + c v = f - limit: the velocity is its mean (f0 - limit) / c and the linear
+// answer to the harmonic part, 0.1 / |c + i w m|, which is smaller.
+TEST(Drift, IsThatOfTheMeanForceWhereASliderNeverTurns) {
+  const auto system = mass_on_a_slider({testing::harmonic(0, 0.5, 0.0), testing::harmonic(0, 0.1, frequency)});
+  for (const Route& route : routes) {
+    SCOPED_TRACE(route.name);
+    const SteadyResponse r = respond(route.name, system);
+    ASSERT_EQ(r.status, SteadyStatus::drifting);
+    ASSERT_EQ(r.drift.size(), 1);
+    const double expected = (0.5 - limit) / dashpot * period;
+    EXPECT_NEAR(r.drift[0], expected, route.tolerance * expected);
+    const double swing = 0.1 / std::hypot(dashpot, frequency);
+    EXPECT_NEAR(r.velocity_amplitude[0], swing, route.tolerance * expected);
+    EXPECT_NEAR(r.dissipated[0], limit * expected, route.tolerance * expected);
+    EXPECT_NEAR(r.slip_share[0], 1.0, 1e-12);
+    EXPECT_TRUE(std::isnan(r.mean[0]));
+  }
+}
+
+// The mean of the first force is below the limit, that of the second zero; but more of the second pulls one way for a
+// short time than the other way for a long one, and friction holds more of the latter. The exact flow from rest walks
+// as far a period.
+TEST(Drift, IsThatOfTheExactFlowWhereForcesPullMoreOneWay) {
+  const std::vector<system::LoadTerm> pushed{testing::harmonic(0, 0.1, 0.0), testing::harmonic(0, 0.5, frequency)},
+      jerked{testing::harmonic(0, 0.4, frequency), testing::harmonic(0, 0.3, 2.0 * frequency)};
+  for (const auto& loads : {pushed, jerked}) {
+    const auto system = mass_on_a_slider(loads);
+    struct Nothing final : ExactVisitor {
+      bool sample(const system::State&, const ExactWork&) override { return true; }
+      bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
+    } nothing;
+    ExactFlow flow(system);
+    system::State state = system.start();
+    flow.advance(state, 40.0 * period, {}, nothing);  // exp(-c t / m) = 5e-28
+    const double before = state.q[0];
+    flow.advance(state, 41.0 * period, {}, nothing);
+    const double expected = state.q[0] - before;
+    ASSERT_GT(std::abs(expected), 1e-3);
+    for (const Route& route : routes) {
+      SCOPED_TRACE(route.name);
+      const SteadyResponse r = respond(route.name, system);
+      ASSERT_EQ(r.status, SteadyStatus::drifting);
+      EXPECT_NEAR(r.drift[0], expected, route.tolerance * r.amplitude[0]);
+      EXPECT_NEAR(r.input_work, r.viscous_work + r.dissipated.sum(), route.tolerance * r.input_work);
+    }
+  }
+}
+
+TEST(Drift, IsNoneWhereTheForceIsTheSameBothWays) {
+  const auto system = mass_on_a_slider({testing::harmonic(0, 0.5, frequency)});
+  for (const Route& route : routes) {
+    SCOPED_TRACE(route.name);
+    const SteadyResponse r = respond(route.name, system);
+    EXPECT_EQ(r.status, SteadyStatus::converged);
+    EXPECT_EQ(r.drift.size(), 0);
+  }
+}
+
+// The same loads as above, and a spring as weak as that: friction and it balance somewhere.
+TEST(Drift, EndsWhereASpringHoldsTheStructure) {
+  system::LocallyNonlinear::Parts parts;
+  const auto free = mass_on_a_slider({testing::harmonic(0, 0.1, 0.0), testing::harmonic(0, 0.5, frequency)});
+  parts.mass = free.mass();
+  parts.damping = free.damping();
+  parts.stiffness = testing::sparse(0.05 * Matrix::Identity(1, 1));
+  parts.sliders = free.sliders();
+  parts.loads = free.loads();
+  parts.coordinates = free.coordinates();
+  const system::LocallyNonlinear system(std::move(parts));
+  for (const Route& route : routes) {
+    SCOPED_TRACE(route.name);
+    EXPECT_EQ(respond(route.name, system).status, SteadyStatus::converged);
+  }
+}
+
+// Nothing limits the speed.
+TEST(Drift, GrowsForEverWithoutADashpot) {
+  const auto system = mass_on_a_slider({testing::harmonic(0, 0.5, 0.0), testing::harmonic(0, 0.1, frequency)}, 0.0);
+  for (const char* route : {"periodic", "harmonic_balance"}) {
+    SCOPED_TRACE(route);
+    const SteadyResponse r = respond(route, system);
+    EXPECT_EQ(r.status, SteadyStatus::unbounded);
+    EXPECT_EQ(r.amplitude[0], std::numeric_limits<double>::infinity());
+  }
+}
+
+}  // namespace
+}  // namespace rubato::integrate

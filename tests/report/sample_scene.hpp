@@ -1,0 +1,12 @@
+#pragma once
+
+#include <rubato/results/sink.hpp>
+
+namespace rubato::test {
+
+/// An analysis "shaken" of an angle of two beams in the plane: node `a` clamped in the origin, `b` 1 m above it, `c` 1
+/// m to the right of `b`. Over 11 rows in a second `b` and `c` go 0.1 m sin(pi t) to the right
+/// and turn.
+void add_scene(results::Sink& sink);
+
+}  // namespace rubato::test
