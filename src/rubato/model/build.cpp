@@ -1,3 +1,4 @@
+#include <rubato/model/build_law.hpp>
 #include <rubato/model/build_structure.hpp>
 #include <rubato/model/model.hpp>
 
@@ -377,33 +378,7 @@ class Builder {
   }
 
   TimeLaw law(const TimeLawDescription& description, const std::string& part) const {
-    if (const auto* harmonic = std::get_if<HarmonicDescription>(&description)) {
-      const std::string key = harmonic->frequency_in_hertz ? "frequency" : "angular_frequency";
-      const double factor = harmonic->frequency_in_hertz ? 2.0 * std::numbers::pi : 1.0;
-      return HarmonicLaw{number(harmonic->amplitude, part + ": amplitude"),
-                         factor * at_least_zero(harmonic->angular_frequency, part + ": " + key),
-                         number(harmonic->phase, part + ": phase")};
-    }
-    if (const auto* formula = std::get_if<TimeFormulaDescription>(&description)) {
-      try {
-        FormulaLaw formula_law{numerics::Expression(formula->formula.expression, parameters_, true)};
-        const double start = formula_law.formula(0.0);
-        if (!std::isfinite(start))
-          throw InvalidInput(fmt::format("\"{}\" is {} at t = 0; give a formula that is finite at all times",
-                                         formula->formula.expression, std::isnan(start) ? std::abs(start) : start));
-        return formula_law;
-      } catch (const InvalidInput& fault) {
-        throw InvalidInput(formula->formula.where, part + ": " + fault.message());
-      }
-    }
-    const auto& table = std::get<TableDescription>(description);
-    TableLaw values;
-    values.times = table.times;
-    values.values = table.values;
-    values.source = table.file;
-    if (table.beyond == TableDescription::Beyond::zero) values.beyond = TableLaw::Beyond::zero;
-    if (table.beyond == TableDescription::Beyond::hold) values.beyond = TableLaw::Beyond::hold;
-    return values;
+    return build_law(description, parameters_, part);
   }
 
   void take_base_motion(const BaseMotionDescription& description) {

@@ -46,7 +46,7 @@ struct LineDescription {
 };
 
 struct BeamDescription : LineDescription {
-  enum class Formulation { timoshenko, euler_bernoulli };
+  enum class Formulation { timoshenko, euler_bernoulli, geometrically_exact };
   Formulation formulation = Formulation::timoshenko;
   int elements = 1;
   std::vector<Quantity> orientation;  ///< in space: a vector in the local x-y plane, not along the beam; may be empty

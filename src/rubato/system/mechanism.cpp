@@ -74,6 +74,11 @@ void Mechanism::difference(const Vector& q, const Vector& to, Vector& dq) const 
   }
 }
 
+void Mechanism::coordinate_values(const Vector& q, Vector& out) const {
+  out.resize(size());
+  for (Index i = 0; i < size(); ++i) out[i] = q[number_[static_cast<std::size_t>(i)]];
+}
+
 void Mechanism::times_mass(const Vector& x, Vector& out) const {
   if (has_diagonal_mass_)
     out = diagonal_.cwiseProduct(x);

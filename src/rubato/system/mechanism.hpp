@@ -39,6 +39,8 @@ class Mechanism {
   void retract(const Vector& q, const Vector& dq, Vector& out) const;
   /// The dq that leads from q to `to` along one retraction.
   void difference(const Vector& q, const Vector& to, Vector& dq) const;
+  /// The numbers of q that the tangent coordinates move [n] [m], [rad].
+  void coordinate_values(const Vector& q, Vector& out) const;
   /// M x
   void times_mass(const Vector& x, Vector& out) const;
 

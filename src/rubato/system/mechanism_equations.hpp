@@ -4,6 +4,7 @@
 #include <rubato/system/mechanism.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace rubato::system {
@@ -43,9 +44,15 @@ class MechanismEquations {
   void second_rate(Vector& out);
 
   bool factorise() { return factor_.factorise(); }
+  /// Rows of constraints that repeat those before them, as the last factors found: what is left of them after the
+  /// elimination of everything that they join is round-off.
+  std::vector<Index> redundant_rows() const;
   /// Solves with the factors; (x, y) is overwritten by the solution.
   void solve(Vector& x, Vector& y);
   int factorisations() const { return factorisations_; }
+
+  /// The user's name of the first law, load or element whose force is not finite where go_to() led; empty: none.
+  std::string non_finite_part();
 
   double stored_energy() const;  ///< of all elements where go_to() led, without gravity [J]
   /// Forces of the elements of one role [n].
@@ -80,6 +87,7 @@ class MechanismEquations {
   std::vector<JointPlace> joint_places_;
   std::vector<int> mass_slot_;
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
+  std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
   std::vector<double> local_, matrix_, velocity_, unknowns_;
   model::Motion motion_;
