@@ -1,8 +1,10 @@
 #include "prepared_study.hpp"
 
 #include <rubato/io/read_study.hpp>
+#include <rubato/model/build_mechanism.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
+#include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
 
@@ -46,7 +48,19 @@ std::vector<model::AnalysisDescription> chosen(const model::StudyDescription& st
 
 system::LocallyNonlinear assembled(const model::StudyDescription& study, const numerics::Parameters& parameters) {
   try {
+    if (model::is_mechanism(study.model)) return system::LocallyNonlinear({});
     return system::assemble(model::build(study.model, parameters));
+  } catch (const InvalidInput& fault) {
+    if (!fault.where().file.empty()) throw;
+    throw InvalidInput({study.file, 0, 0}, fault.message());
+  }
+}
+
+std::shared_ptr<const system::Mechanism> mechanism_of(const model::StudyDescription& study,
+                                                      const numerics::Parameters& parameters) {
+  if (!model::is_mechanism(study.model)) return nullptr;
+  try {
+    return std::make_shared<const system::Mechanism>(model::build_mechanism(study.model, parameters));
   } catch (const InvalidInput& fault) {
     if (!fault.where().file.empty()) throw;
     throw InvalidInput({study.file, 0, 0}, fault.message());
@@ -66,7 +80,8 @@ PreparedStudy prepare(const StudyOptions& options) {
   model::StudyDescription study = io::read_study(options.study);
   const numerics::Parameters parameters = model::evaluate_parameters(study.parameters, overrides);
   const auto analyses = chosen(study, options.only);
-  PreparedStudy prepared{study, overrides, parameters, analyses, {}, assembled(study, parameters)};
+  PreparedStudy prepared{
+      study, overrides, parameters, analyses, {}, assembled(study, parameters), mechanism_of(study, parameters)};
   for (const auto& analysis : analyses)
     prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
   return prepared;

@@ -6,7 +6,12 @@
 #include <rubato/model/description.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <memory>
 #include <vector>
+
+namespace rubato::system {
+class Mechanism;
+}
 
 namespace rubato::app {
 
@@ -15,11 +20,12 @@ struct PreparedStudy {
   model::StudyDescription description;
   numerics::Parameters overrides, parameters;
   std::vector<model::AnalysisDescription> analyses;
-  std::vector<analysis::AnalysisOutline> outlines;  ///< of each analysis
-  system::LocallyNonlinear system;
+  std::vector<analysis::AnalysisOutline> outlines;     ///< of each analysis
+  system::LocallyNonlinear system;                     ///< empty where the model is a mechanism
+  std::shared_ptr<const system::Mechanism> mechanism;  ///< null where it is a structure
 
   double expected_bytes() const;
-  analysis::StudyInput input() const { return {description, overrides, parameters, system}; }
+  analysis::StudyInput input() const { return {description, overrides, parameters, system, mechanism.get()}; }
 };
 
 /// Throws InvalidInput.

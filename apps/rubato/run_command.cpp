@@ -11,6 +11,7 @@
 #include <rubato/io/write_netcdf.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
+#include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
 
@@ -110,7 +111,8 @@ class Runner {
     analysis::RunContext context{sink_, progress, stop_, options_.jobs, journals_[index].get()};
     RunReport report;
     try {
-      report = analysis::run_analysis(task, {study_.description, study_.overrides, study_.parameters, system}, context);
+      report = analysis::run_analysis(
+          task, {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
     } catch (const std::bad_alloc&) {
       report = {RunStatus::failed, "out of memory; observe fewer coordinates, or take a smaller model", {}};
     } catch (const std::exception& fault) {
@@ -212,8 +214,14 @@ int check(const StudyOptions& options) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   const PreparedStudy study = prepare(options);
-  fmt::print("{}\n  {}, {}\n", study.description.title, counted(study.system.size(), "coordinate"),
-             counted(study.system.slider_count(), "slider"));
+  if (study.mechanism)
+    fmt::print("{}\n  {}, {}, {}\n", study.description.title, counted(study.mechanism->size(), "coordinate"),
+               counted(study.mechanism->constraint_count(), "constraint"),
+               counted(static_cast<Index>(study.mechanism->model().locks.size()), "lock"));
+  else
+    fmt::print("{}\n  {}, {}{}\n", study.description.title, counted(study.system.size(), "coordinate"),
+               counted(study.system.slider_count(), "slider"),
+               study.system.stop_count() > 0 ? ", " + counted(study.system.stop_count(), "stop") : "");
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i)
     fmt::print("  {}: {}\n", study.analyses[i].name, study.outlines[i].summary);

@@ -1,6 +1,10 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 
+#include "support/double_pendulum.hpp"
+#include "support/locking_bars.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -69,6 +73,39 @@ TEST(Step, AllocatesNothing) {
     EXPECT_EQ(allocations_of_a_thousand_steps(testing::chain(40, 5, 0.05), method), 0) << method;
     EXPECT_EQ(allocations_of_a_thousand_steps(testing::chain(150, 12, 0.05), method), 0) << method;
   }
+}
+
+long allocations_of_steps(const system::Mechanism& mechanism) {
+  const auto stepper = make_mechanism_stepper(make_method("generalized_alpha"), mechanism);
+  system::MechanismEquations equations(mechanism);
+  system::State a = make_consistent(equations, mechanism.start()).state, b = a;
+  long before = 0;
+  for (int i = 0; i < 250; ++i) {
+    if (i == 50) before = allocations;
+    if (stepper->attempt(a, 0.002, 0.002 * (i + 1), b).outcome != StepOutcome::accepted) return -1;
+    std::swap(a, b);
+  }
+  return allocations - before;
+}
+
+TEST(Step, OfAMechanismAllocatesNothing) {
+  EXPECT_EQ(allocations_of_steps(system::Mechanism(testing::double_pendulum())), 0);
+  EXPECT_EQ(allocations_of_steps(system::Mechanism(testing::locking_bars(testing::LockingLaw::latch).mechanism)), 0);
+}
+
+TEST(Step, OfASavedStateOfAMechanismRepeatsItsBits) {
+  const system::Mechanism mechanism(testing::locking_bars(testing::LockingLaw::none).mechanism);
+  const auto method = make_method("generalized_alpha");
+  const auto stepper = make_mechanism_stepper(method, mechanism);
+  system::MechanismEquations equations(mechanism);
+  system::State state = make_consistent(equations, mechanism.start()).state;
+  march(*stepper, state, 1e-3, 0.1);
+  system::State again = state;
+  march(*stepper, state, 1e-3, 0.2);
+  march(*make_mechanism_stepper(method, mechanism), again, 1e-3, 0.2);
+  EXPECT_EQ(again.q, state.q);
+  EXPECT_EQ(again.v, state.v);
+  EXPECT_EQ(again.multiplier, state.multiplier);
 }
 
 // Retry and restart are exact because there is nothing else than the state.

@@ -131,9 +131,6 @@ TEST(KeyError, NamesAnUnknownTable) {
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: title, parameters, "
       "coordinate, matrices, spring, damper, damping, slider, ...)");
-  EXPECT_EQ(verdict_with("[damping]", "[[body]]\nname = \"crank\"\n\n[damping]"),
-            "study.toml:22:3: error: [[body]] is not available in this version, which reads coordinates, nodes, beams, "
-            "springs, dampers, sliders, forces and [matrices]");
 }
 
 TEST(KeyError, NamesAMissingKeyAtItsTable) {

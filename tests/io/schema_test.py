@@ -80,7 +80,8 @@ REQUIRED = {"coordinate": ("name", "mass"), "spring": ("between", "stiffness"), 
             "material": ("name", "young", "density"), "section": ("name", "area"),
             "beam": ("nodes", "section", "material"), "truss": ("nodes", "section", "material"),
             "mass": ("node",), "support": ("node", "fix"), "displacement": ("on", "value"),
-            "gravity": ("acceleration",)}
+            "gravity": ("acceleration",), "body": ("name", "mass", "inertia", "position"),
+            "joint": ("type", "between")}
 
 
 def mutations(study):

@@ -11,7 +11,8 @@ namespace rubato::testing {
 
 /// Point masses of 5 and 2 kg on rigid massless links of 1 m, hanging at rest; a horizontal force on the second rises
 /// from 0 to 40 N at 0.5 s and falls to 0 at 1 s (Cardona and Cassano 1991, completed).
-inline model::Mechanism double_pendulum() {
+/// @param knows_kinks  of the force: as a table, which says where they are, or as a formula
+inline model::Mechanism double_pendulum(bool knows_kinks = true) {
   model::Mechanism m(2);
   const Index first = m.add_node("1", {0.0, -1.0, 0.0}, {true, true, false});
   const Index second = m.add_node("2", {0.0, -2.0, 0.0}, {true, true, false});
@@ -22,7 +23,11 @@ inline model::Mechanism double_pendulum() {
   m.joints.push_back(
       model::make_plane_distance("lower", m.plane_point(first, 0.0, -1.0), m.plane_point(second, 0.0, -2.0), 1.0));
   m.gravity = {0.0, -9.81, 0.0};
-  m.forces.push_back({2, model::TableLaw{{0.0, 0.5, 1.0}, {0.0, 40.0, 0.0}, model::TableLaw::Beyond::zero, ""}});
+  if (knows_kinks)
+    m.forces.push_back({2, model::TableLaw{{0.0, 0.5, 1.0}, {0.0, 40.0, 0.0}, model::TableLaw::Beyond::zero, ""}});
+  else
+    m.forces.push_back(
+        {2, model::FormulaLaw{numerics::Expression("t < 0.5 ? 80*t : (t < 1 ? 80*(1 - t) : 0)", {}, true)}});
   m.reference = std::sqrt(42.0);  // 3 (m1 + m2) (diagonal 2 m)^2 / 2 links
   return m;
 }

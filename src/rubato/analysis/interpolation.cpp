@@ -28,7 +28,8 @@ void StepInterpolation::add(const system::State& state, model::Side side) {
 }
 
 void StepInterpolation::take(const system::State& before, const system::State& after) {
-  const bool goes_on = !is_quintic_ && count_ > 0 && knot(0).state.t == before.t && !jumps_at(before.t);
+  const bool goes_on = !is_quintic_ && count_ > 0 && knot(0).state.t == before.t && !jumps_at(before.t) &&
+                       knot(0).state.slider_force == before.slider_force;  // a damped stop may jump
   if (!goes_on) {
     count_ = 0;
     add(before, model::Side::right);

@@ -1,3 +1,4 @@
+#include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
@@ -174,13 +175,37 @@ bool is_drawn(const model::AnalysisDescription& analysis) {
 
 }  // namespace
 
+namespace {
+
+/// A mechanism is marched; the other analyses are of structures.
+const model::TransientDescription& transient_of(const model::AnalysisDescription& analysis) {
+  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) return *transient;
+  throw InvalidInput(analysis.where,
+                     fmt::format("analysis \"{}\": a mechanism (bodies, joints, geometrically exact beams) is analysed "
+                                 "by type = \"transient\"",
+                                 analysis.name));
+}
+
+}  // namespace
+
 AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  if (input.mechanism) {
+    const MechanismPlan plan =
+        plan_mechanism(analysis.name, analysis.where, transient_of(analysis), *input.mechanism, input.parameters);
+    return {plan.summary(),
+            plan.transient.rows * (10.0 + 3.0 * static_cast<double>(plan.transient.observed.size())) * 28.0};
+  }
   return std::visit(Check{analysis, input}, analysis.task);
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
-  RunReport report = std::visit(Run{analysis, input, context}, analysis.task);
-  const std::size_t nodes = input.study.model.structure.nodes.size();
+  RunReport report = input.mechanism
+                         ? run_mechanism(analysis.name,
+                                         plan_mechanism(analysis.name, analysis.where, transient_of(analysis),
+                                                        *input.mechanism, input.parameters),
+                                         *input.mechanism, context)
+                         : std::visit(Run{analysis, input, context}, analysis.task);
+  const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();
   if (is_drawn(analysis) && nodes > 0 && nodes <= most_drawn_nodes)
     write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);
   auto notes = report.statistics;

@@ -55,6 +55,19 @@ void require_stable(const TransientPlan& plan, const system::LocallyNonlinear& s
                                         plan.step, plan.method.name, limit.step, mode));
 }
 
+system::State static_start(const std::string& name, const Location& where, const model::StaticDescription& description,
+                           const system::LocallyNonlinear& system) {
+  const Vector& given = system.start().q;
+  for (Index i = 0; i < given.size(); ++i)
+    if (given[i] != 0.0)
+      throw InvalidInput(where, fmt::format("analysis \"{}\": initial = \"static\" finds the positions, and coordinate "
+                                            "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
+                                            name, system.coordinates()[static_cast<std::size_t>(i)]));
+  return equilibrium_of(name, where, description, system).state;
+}
+
+}  // namespace
+
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where) {
   plan.output = output.kind;
@@ -99,19 +112,6 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
       break;
   }
 }
-
-system::State static_start(const std::string& name, const Location& where, const model::StaticDescription& description,
-                           const system::LocallyNonlinear& system) {
-  const Vector& given = system.start().q;
-  for (Index i = 0; i < given.size(); ++i)
-    if (given[i] != 0.0)
-      throw InvalidInput(where, fmt::format("analysis \"{}\": initial = \"static\" finds the positions, and coordinate "
-                                            "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
-                                            name, system.coordinates()[static_cast<std::size_t>(i)]));
-  return equilibrium_of(name, where, description, system).state;
-}
-
-}  // namespace
 
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters) {
   std::vector<std::pair<std::string, double>> values;

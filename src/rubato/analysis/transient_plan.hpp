@@ -40,6 +40,11 @@ struct TransientPlan {
 /// The method that a description names, with the values of its parameters. Throws InvalidInput at its place.
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters);
 
+/// Evaluates where rows are wanted and how many that makes; method, step and duration are planned already. Throws
+/// InvalidInput.
+void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
+                 const Location& where);
+
 /// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
 Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system);
 

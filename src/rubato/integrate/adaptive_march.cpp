@@ -204,7 +204,7 @@ class Marcher {
   void start_anew() {
     history_ = {};
     estimator_.start(base_);
-    wanted_ = std::min(wanted_, first_step());
+    if (!std::holds_alternative<FixedStep>(plan_.controller)) wanted_ = std::min(wanted_, first_step());
     ++report_.restarts;
   }
 

@@ -212,6 +212,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
   }
   model.base_motion = read_base_motion(root, folder);
   read_structure(root, folder, model);
+  read_mechanism(root, model);
   return model;
 }
 

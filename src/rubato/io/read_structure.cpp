@@ -69,8 +69,10 @@ void read_line(TomlReader& reader, const std::string& kind, LineDescription& lin
 BeamDescription read_beam(TomlReader& reader) {
   BeamDescription beam;
   read_line(reader, "beam", beam);
-  if (reader.optional_word("formulation", {"timoshenko", "euler_bernoulli"}) == "euler_bernoulli")
-    beam.formulation = BeamDescription::Formulation::euler_bernoulli;
+  const auto formulation =
+      reader.optional_word("formulation", {"timoshenko", "euler_bernoulli", "geometrically_exact"});
+  if (formulation == "euler_bernoulli") beam.formulation = BeamDescription::Formulation::euler_bernoulli;
+  if (formulation == "geometrically_exact") beam.formulation = BeamDescription::Formulation::geometrically_exact;
   const long elements = reader.optional_integer("elements").value_or(1);
   if (elements < 1 || elements > 10'000'000)
     throw InvalidInput(reader.where("elements"),

@@ -28,17 +28,6 @@ std::string syntax_hint(std::string_view description) {
              : " (is the closing quote missing?)";
 }
 
-/// Tables of the study language that this version does not read.
-void refuse_planned_tables(const toml::table& table, const TomlReader& root) {
-  const std::vector<std::string> planned{"body", "joint"};
-  for (const auto& [key, value] : table)
-    if (std::find(planned.begin(), planned.end(), key.str()) != planned.end())
-      throw InvalidInput(root.location(key),
-                         fmt::format("[[{}]] is not available in this version, which reads coordinates, nodes, beams, "
-                                     "springs, dampers, sliders, forces and [matrices]",
-                                     key.str()));
-}
-
 /// Where [matrices] names its coordinates, their numbers serve in `observe` too.
 void name_by_number(const std::vector<std::string>& names, model::ObservationDescription& observation) {
   for (std::string* name : {&observation.first, &observation.second}) {
@@ -139,7 +128,6 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
                        fmt::format("this is no TOML: {}{}", fault.description(), syntax_hint(fault.description())));
   }
   TomlReader root(table, "the study", name);
-  refuse_planned_tables(table, root);
   model::StudyDescription study;
   study.file = name;
   study.text = text;

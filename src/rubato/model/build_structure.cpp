@@ -151,12 +151,14 @@ class StructureBuilder {
                                        "\"torsion\" [m4]",
                                        part, beam.section));
     }
-    const bool has_shear = beam.formulation == BeamDescription::Formulation::timoshenko;
+    const bool has_shear = beam.formulation != BeamDescription::Formulation::euler_bernoulli;
+    const bool is_exact = beam.formulation == BeamDescription::Formulation::geometrically_exact;
     if (has_shear && section.shear_factor_y == 0.0)
       throw InvalidInput(beam.section_where,
-                         fmt::format("{} is a Timoshenko beam, and its section \"{}\" has no shear_factor (5/6 for a "
-                                     "rectangle); give it one, or take formulation = \"euler_bernoulli\"",
-                                     part, beam.section));
+                         fmt::format("{} is a {} beam, and its section \"{}\" has no shear_factor (5/6 for a "
+                                     "rectangle); give it one{}",
+                                     part, is_exact ? "geometrically exact" : "Timoshenko", beam.section,
+                                     is_exact ? "" : ", or take formulation = \"euler_bernoulli\""));
     if (p.shear_modulus == 0.0 && (has_shear || !in_plane()))
       throw InvalidInput(beam.material_where,
                          fmt::format("{} needs the shear modulus of the material \"{}\"; give the material \"poisson\" "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/mechanism_description.hpp>
 #include <rubato/model/quantity.hpp>
 #include <rubato/model/structure_description.hpp>
 
@@ -173,6 +174,8 @@ struct ModelDescription {
   std::vector<CoordinateDescription> coordinates;
   std::optional<MatricesDescription> matrices;
   StructureDescription structure;
+  std::vector<BodyDescription> bodies;
+  std::vector<JointDescription> joints;
   std::vector<SpringDescription> springs;
   std::vector<DamperDescription> dampers;
   DampingDescription damping;

@@ -46,7 +46,7 @@ struct LineDescription {
 };
 
 struct BeamDescription : LineDescription {
-  enum class Formulation { timoshenko, euler_bernoulli };
+  enum class Formulation { timoshenko, euler_bernoulli, geometrically_exact };
   Formulation formulation = Formulation::timoshenko;
   int elements = 1;
   /// Degrees of freedom in the beam's own axes ("x", ..., "rz") that its first and its second end do not share with

@@ -50,6 +50,9 @@ class KktFactor {
   /// x <- A^-1 x
   void solve(double* x) const;
 
+  /// What an unknown was divided by; after factorise().
+  double pivot(Index i) const { return 1.0 / value_[static_cast<std::size_t>(position_[static_cast<std::size_t>(i)])]; }
+
   Index factor_entries() const { return static_cast<Index>(row_.size()); }
 
  private:

@@ -109,6 +109,13 @@ void Mechanism::to_travel(const Vector& travel, Vector& motion) const {
     put(numerics::inverse_tangent_of(part_of(travel, turn.place)) * part_of(motion, turn.place), turn.place, motion);
 }
 
+void Mechanism::coordinate_values(const Vector& q, Vector& out) const {
+  out.resize(size());
+  for (Index i = 0; i < size(); ++i)
+    if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) out[i] = q[number];
+  for (const Turn& turn : turns_) put(numerics::vector_of(rotation_in(q, turn.quaternion)), turn.place, out);
+}
+
 void Mechanism::times_mass(const Vector& x, Vector& out) const {
   if (has_diagonal_mass_)
     out = diagonal_.cwiseProduct(x);

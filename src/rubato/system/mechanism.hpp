@@ -40,6 +40,8 @@ class Mechanism {
   void retract(const Vector& q, const Vector& dq, Vector& out) const;
   /// The dq that leads from q to `to` along one retraction.
   void difference(const Vector& q, const Vector& to, Vector& dq) const;
+  /// The numbers of q that the tangent coordinates move, in space the rotation vectors [n] [m], [rad].
+  void coordinate_values(const Vector& q, Vector& out) const;
   /// Turns a small motion in the tangent space at the end of `travel` into the change of `travel` that makes it:
   /// T(rotation)^-1 of each node in space (Bruels, Cardona and Arnold 2012); in the plane they are the same.
   void to_travel(const Vector& travel, Vector& motion) const;

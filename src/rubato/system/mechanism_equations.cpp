@@ -1,6 +1,7 @@
 #include <rubato/system/mechanism_equations.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rubato::system {
 namespace {
@@ -49,6 +50,7 @@ MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(
   unknowns_.assign(static_cast<std::size_t>(mechanism.size() + mechanism.constraint_count()), 0.0);
   const Vector diagonal = mechanism.mass().diagonal();
   for (const double mass : diagonal) inverse_mass_.push_back(1.0 / mass);
+  row_seen_.assign(static_cast<std::size_t>(mechanism.constraint_count()), 0.0);
   analyse();
 }
 
@@ -181,11 +183,24 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
         const double entry = jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
         seen += entry * entry * inverse_mass_[static_cast<std::size_t>(place.place[i])];
       }
+      if (!is_active) seen = 0.0;
+      row_seen_[static_cast<std::size_t>(place.first_row + r)] = seen;
       // An open lock says nothing: multiplier = 0.
       values[factor_.slot(n + place.first_row + r, n + place.first_row + r)] -=
-          is_active && seen > 0.0 ? share * seen / (weights.constraint > 0.0 ? weights.constraint : weights.mass) : 1.0;
+          seen > 0.0 ? share * seen / (weights.constraint > 0.0 ? weights.constraint : weights.mass) : 1.0;
     }
   }
+}
+
+std::vector<Index> MechanismEquations::redundant_rows() const {
+  constexpr double left = 1e-8;  // E is a hundredth of it; rows at an angle of 1e-4 leave as much
+  std::vector<Index> rows;
+  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
+    const auto row = static_cast<Index>(r);
+    if (row_seen_[r] > 0.0 && std::abs(factor_.pivot(mechanism_.size() + row)) < left * row_seen_[r])
+      rows.push_back(row);
+  }
+  return rows;
 }
 
 void MechanismEquations::add_constraint_force(const Vector& multiplier, double factor, Vector& out) const {
@@ -263,6 +278,18 @@ MechanismEquations::Linearised MechanismEquations::linearised(const Vector& mult
   result.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
   result.jacobian.setFromTriplets(jacobian.begin(), jacobian.end());
   return result;
+}
+
+std::string MechanismEquations::non_finite_part() {
+  for (const auto& force : forces_)
+    if (!std::isfinite(model::value(force.law, motion_.t, motion_.side)))
+      return "the force on \"" + mechanism_.coordinates()[static_cast<std::size_t>(force.coordinate)] + "\"";
+  for (const auto& element : elements_) {
+    element->force(motion_, local_.data());
+    for (std::size_t i = 0; i < element->places().size(); ++i)
+      if (!std::isfinite(local_[i])) return "the law of \"" + element->name() + "\"";
+  }
+  return {};
 }
 
 double MechanismEquations::stored_energy() const {

@@ -4,6 +4,7 @@
 #include <rubato/system/mechanism.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace rubato::system {
@@ -44,6 +45,9 @@ class MechanismEquations {
   void second_rate(Vector& out);
 
   bool factorise() { return factor_.factorise(); }
+  /// Rows of constraints that repeat those before them, as the last factors found: what is left of them after the
+  /// elimination of everything that they join is round-off.
+  std::vector<Index> redundant_rows() const;
   /// Whether the last matrix was positive definite on the motions that the constraints leave (where it is symmetric).
   bool is_positive() const { return factor_.negative_pivots() <= mechanism_.constraint_count(); }
   /// Solves with the factors; (x, y) is overwritten by the solution.
@@ -56,6 +60,9 @@ class MechanismEquations {
     SparseMatrix jacobian;            ///< G; rows of open locks are empty [c x n]
   };
   Linearised linearised(const Vector& multiplier);
+
+  /// The user's name of the first law, load or element whose force is not finite where go_to() led; empty: none.
+  std::string non_finite_part();
 
   double stored_energy() const;  ///< of all elements where go_to() led, without gravity [J]
   /// Forces of the elements of one role [n].
@@ -90,6 +97,7 @@ class MechanismEquations {
   std::vector<JointPlace> joint_places_;
   std::vector<int> mass_slot_;
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
+  std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
   std::vector<double> local_, matrix_, velocity_, unknowns_;
   model::Motion motion_;

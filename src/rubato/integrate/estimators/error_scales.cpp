@@ -36,7 +36,7 @@ double ErrorScales::memory() const {
 
 double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to) const {
   double size = size_, omega = frequency();
-  if (!(size > 0.0)) {  // at rest until now: by what it is about to do
+  if (!(size > 0.0 && y_ > 0.0)) {  // at rest until now: by what it is about to do
     const ResponseScales scales = space_.scales(to, to.auxiliary_acceleration, duration_);
     if (scales.size == 0.0) return 0.0;
     size = std::max(size, scales.size);

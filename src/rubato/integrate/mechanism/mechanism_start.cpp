@@ -1,7 +1,5 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 
@@ -70,6 +68,7 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   double last_gap = HUGE_VAL;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (!factorise_mass(equations, state, side, force, constraint)) return result;
+    result.redundant = equations.redundant_rows();
     double gap = 0.0;
     result.worst_row = largest_of(constraint, gap);
     result.gap = gap;
@@ -83,6 +82,7 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
     std::swap(state.q, other);
   }
   if (!(result.gap <= 1e-10 * extent)) return result;
+  result.is_assembled = true;
   mechanism.difference(first, state.q, moved);
   result.most_moved = largest_of(moved, result.position_moved);
   if (result.position_moved <= 1e-12 * extent) result.most_moved = -1;

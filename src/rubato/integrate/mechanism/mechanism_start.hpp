@@ -10,7 +10,8 @@ namespace rubato::integrate {
 /// What it took to make a state consistent.
 struct ConsistentStart {
   system::State state;
-  bool is_consistent = false;
+  bool is_assembled = false;    ///< the positions satisfy the constraints
+  bool is_consistent = false;   ///< and velocities, accelerations and multipliers were found
   double position_moved = 0.0;  ///< the largest change of a coordinate [m], [rad]
   Index most_moved = -1;        ///< its place; -1: nothing moved
   double velocity_changed = 0.0;

@@ -84,6 +84,7 @@ class MechanismStepper final : public Stepper {
     return fault(StepOutcome::not_converged);
   }
 
+  double shift() const override { return p_.alpha_m - p_.alpha_f; }
   int factorisations() const override { return equations_.factorisations(); }
 
  private:
@@ -101,8 +102,19 @@ class MechanismStepper final : public Stepper {
 
   StepReport finish(const system::State& from, double h, system::State& to) {
     place(from, h, to);
+    if (plan_.projects_velocities && constraint_.size() > 0) project(to);
     if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite()) return {};
     return fault(StepOutcome::not_finite);
+  }
+
+  void project(system::State& to) {
+    equations_.go_to(to, model::Side::left);
+    equations_.constraints(constraint_);
+    equations_.constraint_rate(to.v, constraint_);
+    constraint_ = -constraint_;
+    force_.setZero();
+    equations_.solve(force_, constraint_);
+    to.v += force_;
   }
 
   /// The coordinate whose correction was not finite, or the largest.

@@ -13,6 +13,10 @@ struct NewtonPlan {
   double tolerance = 1e-10;  ///< of the error left in the positions, in the mass norm over `reference` [-]
   double reference = 0.0;    ///< l [m sqrt(kg)]; 0: the mechanism's, or of one metre and radian in every coordinate
   int most_iterations = 20;
+  /// Removes G v + dg/dt from the velocities at the end of each step, with the factors at hand. Constraints on
+  /// positions leave it of second order; a step much shorter than the last turns what is left into accelerations of its
+  /// size over the step, which an error per unit of time never accepts.
+  bool projects_velocities = false;
 };
 
 /// The generalized-alpha step of a mechanism with its constraints on positions (index 3; Arnold and Bruels 2007; on

@@ -113,7 +113,7 @@ function hysteresis_loops(table, force) {
 
 // Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
 const ledger_panels = [
-  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated"], domain: [0.60, 1.0]},
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated"], domain: [0.60, 1.0]},
   {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored"], domain: [0.24, 0.54]},
   {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
 ];
@@ -123,7 +123,7 @@ function energy_ledger(table) {
   const others = table.variables.slice(1).map((variable) => variable.name).filter((name) => !named.includes(name));
   const choosers = table.window ? [whole_or_window] : [];
   return make_figure({
-    caption: "Energy ledger: work of the loads and what dampers and sliders dissipated since the start (top), energy stored " +
+    caption: "Energy ledger: work of the loads and what dampers, sliders and locks dissipated since the start (top), energy stored " +
       "(middle), and the residue of the integration that closes the balance (bottom, on its own scale). " +
       overview_text(table),
     height: 620, choosers,

@@ -1,0 +1,236 @@
+#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/integrate/mechanism/mechanism_space.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rubato::analysis {
+namespace {
+
+Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
+
+double positive(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
+                const numerics::Parameters& parameters) {
+  if (!quantity) return otherwise;
+  const double value = model::evaluate(*quantity, parameters, what);
+  if (!(value > 0.0)) throw InvalidInput(quantity->where, fmt::format("{} must be positive, got {}", what, value));
+  return value;
+}
+
+std::string row_names(const std::vector<Index>& rows, const system::Mechanism& mechanism) {
+  std::vector<std::string> names;
+  for (const Index row : rows) names.push_back(fmt::format("\"{}\"", mechanism.rows()[static_cast<std::size_t>(row)]));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The start on the constraints; what had to move is told.
+system::State assembled(const Location& where, const system::Mechanism& mechanism, std::vector<std::string>& warnings) {
+  system::MechanismEquations equations(mechanism);
+  const auto start = integrate::make_consistent(equations, mechanism.start());
+  const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
+  if (start.is_assembled && !start.is_consistent) {
+    equations.go_to(start.state, model::Side::right);
+    const std::string part = equations.non_finite_part();
+    throw InvalidInput(where, fmt::format("there are no finite accelerations at the start{}",
+                                          part.empty() ? "" : ": " + part + " is not finite there"));
+  }
+  if (!start.is_consistent) {
+    const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
+    if (!start.redundant.empty())
+      throw InvalidInput(where, fmt::format("the joints cannot be assembled: they contradict each other; \"{}\" stays "
+                                            "apart by {:.4g}, and {} can only repeat what other joints say",
+                                            row, start.gap, row_names(start.redundant, mechanism)));
+    throw InvalidInput(where, fmt::format("the joints cannot be assembled: \"{}\" stays apart by {:.4g}; look at the "
+                                          "places and lengths around it",
+                                          row, start.gap));
+  }
+  if (start.most_moved >= 0)
+    warnings.push_back(
+        fmt::format("the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
+                    "{:.4g}",
+                    coordinate(start.most_moved), start.position_moved));
+  if (start.most_changed >= 0)
+    warnings.push_back(
+        fmt::format("the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
+                    "{:.4g}, which took {:.4g} J",
+                    coordinate(start.most_changed), start.velocity_changed, start.energy_lost));
+  if (!start.redundant.empty())
+    warnings.push_back(
+        fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
+                    "least ones are given",
+                    row_names(start.redundant, mechanism), start.redundant.size() == 1 ? "s" : ""));
+  return start.state;
+}
+
+Index find(const std::string& name, const Location& where, const system::Mechanism& mechanism) {
+  const auto& known = mechanism.coordinates();
+  const auto found = std::find(known.begin(), known.end(), name);
+  if (found != known.end()) return static_cast<Index>(found - known.begin());
+  throw InvalidInput(where,
+                     fmt::format("observe names \"{}\", which is no coordinate{}", name, suggestion(name, known)));
+}
+
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::Mechanism& mechanism) {
+  const auto is_rotation = [&](Index i) { return mechanism.model().is_rotation[static_cast<std::size_t>(i)] != 0; };
+  std::vector<Observed> observed;
+  if (!wanted)
+    for (Index i = 0; i < mechanism.size(); ++i)
+      observed.push_back({mechanism.coordinates()[static_cast<std::size_t>(i)], i, ground, is_rotation(i)});
+  else
+    for (const auto& one : *wanted) {
+      const Index first = find(one.first, one.where, mechanism);
+      if (one.second.empty()) {
+        observed.push_back({one.first, first, ground, is_rotation(first)});
+        continue;
+      }
+      const Index second = find(one.second, one.where, mechanism);
+      if (is_rotation(first) != is_rotation(second))
+        throw InvalidInput(one.where, fmt::format("observe: \"{} - {}\" is the difference of a position [m] and a "
+                                                  "rotation [rad]",
+                                                  one.first, one.second));
+      observed.push_back({one.first + " - " + one.second, first, second, is_rotation(first)});
+    }
+  std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
+  return observed;
+}
+
+/// A sixth of the shortest period of a harmonic load.
+double period_limit(const system::Mechanism& mechanism) {
+  double fastest = 0.0;
+  for (const auto& force : mechanism.model().forces)
+    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&force.law))
+      fastest = std::max(fastest, std::abs(harmonic->angular_frequency));
+  return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest / 6.0 : HUGE_VAL;
+}
+
+AutomaticStep fixed_step(double step, double duration) {
+  AutomaticStep automatic;
+  automatic.plan.controller = integrate::FixedStep{};
+  automatic.plan.first = automatic.plan.largest = step;
+  automatic.plan.smallest = 1e-12 * duration;
+  automatic.plan.locate_events = true;
+  automatic.estimator = integrate::LocalError{automatic.tolerance};
+  automatic.expected_steps = std::ceil(duration / step * (1.0 - 1e-12));
+  return automatic;
+}
+
+AutomaticStep automatic_step(const std::string& title, const model::StepDescription& description,
+                             const integrate::Method& method, const system::Mechanism& mechanism,
+                             const system::State& start, const numerics::Parameters& parameters, double duration) {
+  AutomaticStep step;
+  step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
+  const double reference = positive(description.reference, 0.0, title + "reference", parameters);
+  integrate::StepPlan& plan = step.plan;
+  const bool is_paper = description.controller == "cardona_cassano";
+  if (is_paper) plan.controller = integrate::CardonaCassano{};
+  if (description.controller == "fixed") plan.controller = integrate::FixedStep{};
+  plan.locate_events = true;
+  plan.rebuild = description.rebuild;
+  plan.smallest = positive(description.smallest, 1e-12 * duration, title + "smallest", parameters);
+  plan.largest = std::min(duration, positive(description.largest, std::min(duration / 50.0, period_limit(mechanism)),
+                                             title + "largest", parameters));
+  plan.first = positive(description.first, 0.0, title + "first", parameters);
+  if (!(plan.smallest <= plan.largest))
+    throw InvalidInput(
+        description.smallest ? description.smallest->where : description.where,
+        fmt::format("{}the smallest step {} s is beyond the largest, {} s", title, plan.smallest, plan.largest));
+  if (plan.first > 0.0 && !(plan.first >= plan.smallest && plan.first <= plan.largest))
+    throw InvalidInput(description.first->where,
+                       fmt::format("{}the first step {} s lies outside the range from {} s to {} s", title, plan.first,
+                                   plan.smallest, plan.largest));
+  if (description.controller == "fixed" && !description.first)
+    throw InvalidInput(description.where,
+                       title + "the controller fixed keeps the first step; give it, first = ... [s]");
+  const bool is_jump = description.estimator == "inertia_jump" || (description.estimator.empty() && is_paper);
+  if (description.reference_is_initial)
+    throw InvalidInput(description.where, title +
+                                              "reference = \"initial\" measures displacements, and configurations "
+                                              "of mechanisms have none; give a number, or leave it out");
+  if (is_jump)
+    step.estimator = integrate::InertiaJump{step.tolerance, reference > 0.0 ? reference : mechanism.reference(),
+                                            description.as_printed};
+  else if (description.estimator == "embedded")
+    step.estimator = integrate::Embedded{step.tolerance};
+  else
+    step.estimator = integrate::LocalError{step.tolerance};
+  if (!is_jump && (description.reference || description.as_printed))
+    throw InvalidInput(description.where,
+                       title + "\"reference\" and \"as_printed\" belong to the estimator inertia_jump");
+  try {
+    (void)integrate::make_estimator(step.estimator, std::get<integrate::GeneralizedAlpha>(method.formula),
+                                    integrate::make_error_space(mechanism), start, duration);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(description.tolerance.where, title + fault.message());
+  }
+  step.expected_steps = std::ceil(duration / (description.controller == "fixed" ? plan.first : plan.largest));
+  return step;
+}
+
+}  // namespace
+
+std::string MechanismPlan::summary() const {
+  if (std::holds_alternative<integrate::FixedStep>(transient.automatic->plan.controller))
+    return fmt::format("transient, {}, {:.0f} steps of {} s to t = {} s", transient.method.name,
+                       transient.automatic->expected_steps, transient.automatic->plan.first, transient.duration);
+  return fmt::format("transient, {}, {}, to t = {} s", transient.method.name, analysis::summary(*transient.automatic),
+                     transient.duration);
+}
+
+MechanismPlan plan_mechanism(const std::string& name, const Location& where,
+                             const model::TransientDescription& description, const system::Mechanism& mechanism,
+                             const numerics::Parameters& parameters) {
+  const std::string title = "analysis \"" + name + "\": ";
+  MechanismPlan plan;
+  TransientPlan& transient = plan.transient;
+  plan.allow_unstable = description.allow_unstable;
+  transient.method = method_of(description.method, parameters);
+  try {
+    (void)integrate::make_mechanism_stepper(transient.method, mechanism, {}, plan.allow_unstable);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(place(description.method.where, where), title + fault.message());
+  }
+  transient.duration = positive(description.duration, 0.0, title + "duration", parameters);
+  transient.energy = description.energy;
+  if (description.initial)
+    throw InvalidInput(where, title +
+                                  "initial = \"static\" is for structures; a mechanism starts from its "
+                                  "configuration");
+  transient.start = assembled(where, mechanism, plan.warnings);
+  if (description.automatic_step) {
+    transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
+                                         transient.start, parameters, transient.duration);
+  } else {
+    if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
+    const double step = positive(description.step, 0.0, title + "step", parameters);
+    if (step > transient.duration)
+      throw InvalidInput(
+          place(description.step->where, where),
+          fmt::format("{}the step {} s is longer than the duration {} s", title, step, transient.duration));
+    if (transient.duration / step > 1e12)
+      throw InvalidInput(place(description.step->where, where),
+                         fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
+                                     transient.duration / step, step));
+    transient.automatic = fixed_step(step, transient.duration);
+  }
+  for (const auto& force : mechanism.model().forces) {
+    const auto* table = std::get_if<model::TableLaw>(&force.law);
+    if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
+    if (table->times.front() <= 0.0 && table->times.back() >= transient.duration * (1.0 - 1e-12)) continue;
+    throw InvalidInput(where,
+                       fmt::format("the table \"{}\" reaches from {} s to {} s, the analysis from 0 s to {} s; extend "
+                                   "it, or say beyond = \"zero\" or \"hold\" where it is used",
+                                   table->source, table->times.front(), table->times.back(), transient.duration));
+  }
+  plan_output(transient, description.output, parameters, where);
+  transient.observed = observed_or_all(description.observe, mechanism);
+  return plan;
+}
+
+}  // namespace rubato::analysis

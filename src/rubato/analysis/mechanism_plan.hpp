@@ -1,0 +1,26 @@
+#pragma once
+
+#include <rubato/analysis/transient_plan.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// A transient of a mechanism with all its values, from a start that satisfies the constraints.
+struct MechanismPlan {
+  TransientPlan transient;  ///< `start` is consistent; `automatic` holds the plan of fixed steps too
+  bool allow_unstable = false;
+  std::vector<std::string> warnings;  ///< what the start took: parts that moved, constraints that repeat others
+
+  std::string summary() const;
+};
+
+/// Evaluates a description, assembles the mechanism and checks that it can run. Throws InvalidInput, naming the joints
+/// and by how much they are apart, where they cannot be assembled, and for a method that constraints do not go with.
+MechanismPlan plan_mechanism(const std::string& name, const Location& where,
+                             const model::TransientDescription& description, const system::Mechanism& mechanism,
+                             const numerics::Parameters& parameters);
+
+}  // namespace rubato::analysis

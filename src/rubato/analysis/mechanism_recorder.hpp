@@ -1,0 +1,56 @@
+#pragma once
+
+#include <rubato/analysis/mechanism_ledger.hpp>
+#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
+#include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+#include <rubato/results/sink.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// Turns states of a mechanism into rows: time, position, velocity and acceleration of what is observed, the coordinate
+/// that each joint leaves free, the reactions of the joints, and the energy ledger in a table of its own.
+///
+/// Accelerations and reactions are those of equilibrium at the positions and velocities of the row: the multipliers of
+/// a step carry what the constraints do to velocities that have drifted, over the length of that step.
+///
+/// A reaction is what a joint does to its second node (to its first the opposite), a tension pulls.
+class MechanismRecorder {
+ public:
+  MechanismRecorder(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
+                    results::Sink& sink);
+
+  /// @param energy  null without a ledger
+  void record(const system::State& state, const MechanismEnergy* energy);
+  long rows() const { return count_; }
+
+ private:
+  /// Rows of constraints that bear one name, "x" or "moment".
+  struct Reaction {
+    std::string name;
+    std::vector<std::string> joints;
+    std::vector<Index> rows;
+    double sign = -1.0;
+  };
+  void add_joints(results::TableLayout& layout);
+
+  const system::Mechanism& mechanism_;
+  ObservedBlocks observed_;
+  std::vector<Reaction> reactions_;
+  system::MechanismEquations equations_;
+  system::State balanced_;
+  Vector values_, positions_, velocities_, accelerations_;
+  std::vector<double> row_;
+  std::unique_ptr<results::RowWriter> rows_, energy_rows_;
+  long count_ = 0;
+};
+
+/// The locks that engaged and let go, in a table `events`.
+void write_events(const std::string& name, const std::vector<integrate::LockEvent>& events,
+                  const system::Mechanism& mechanism, results::Sink& sink);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,205 @@
+#include <rubato/analysis/mechanism_recorder.hpp>
+#include <rubato/analysis/mechanism_transient.hpp>
+#include <rubato/integrate/adaptive_march.hpp>
+#include <rubato/integrate/mechanism/mechanism_space.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rubato::analysis {
+namespace {
+
+using OutputKind = model::OutputDescription::Kind;
+
+/// States within a step: along the travel of the step by the quintic through travel, velocity and acceleration of both
+/// ends (error h^6), multipliers linear. Constraints hold at the ends; between them to the error of the interpolation.
+class Between {
+ public:
+  explicit Between(const system::Mechanism& mechanism) : mechanism_(mechanism), travel_(mechanism.size()) {}
+
+  void at(const system::State& before, const system::State& after, double t, system::State& state) {
+    const double h = after.t - before.t, s = (t - before.t) / h, s2 = s * s, s3 = s2 * s;
+    mechanism_.difference(before.q, after.q, travel_);
+    const double q1 = s3 * (10.0 + s * (-15.0 + 6.0 * s));
+    const double v0 = s + s3 * (-6.0 + s * (8.0 - 3.0 * s)), v1 = s3 * (-4.0 + s * (7.0 - 3.0 * s));
+    const double a0 = 0.5 * s2 * (1.0 + s * (-3.0 + s * (3.0 - s))), a1 = 0.5 * s3 * (1.0 + s * (-2.0 + s));
+    const double dq1 = 30.0 * s2 * (1.0 + s * (-2.0 + s));
+    const double dv0 = 1.0 + s2 * (-18.0 + s * (32.0 - 15.0 * s)), dv1 = s2 * (-12.0 + s * (28.0 - 15.0 * s));
+    const double da0 = s + s2 * (-4.5 + s * (6.0 - 2.5 * s)), da1 = s2 * (1.5 + s * (-4.0 + 2.5 * s));
+    state = before;
+    state.t = t;
+    state.v = (dq1 / h) * travel_ + dv0 * before.v + dv1 * after.v +
+              h * (da0 * before.acceleration + da1 * after.acceleration);
+    travel_ = q1 * travel_ + h * (v0 * before.v + v1 * after.v) +
+              (h * h) * (a0 * before.acceleration + a1 * after.acceleration);
+    mechanism_.retract(before.q, travel_, state.q);
+    state.acceleration = (1.0 - s) * before.acceleration + s * after.acceleration;
+    state.multiplier = (1.0 - s) * before.multiplier + s * after.multiplier;
+  }
+
+ private:
+  const system::Mechanism& mechanism_;
+  Vector travel_;
+};
+
+class MechanismObserver final : public integrate::Observer {
+ public:
+  MechanismObserver(const TransientPlan& plan, const system::Mechanism& mechanism, MechanismRecorder& recorder,
+                    RunContext& context)
+      : plan_(plan), recorder_(recorder), context_(context), ledger_(mechanism), between_(mechanism) {}
+
+  void start(const system::State& state) {
+    ledger_.start(state);
+    if (plan_.output == OutputKind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
+    record(state, state);
+    ++next_;
+  }
+
+  bool accepted(const system::State& before, const system::State& after) override {
+    ++steps_;
+    last_recorded_ = false;
+    if (plan_.output == OutputKind::interval || plan_.output == OutputKind::times) record_between(before, after);
+    if (plan_.energy) ledger_.add_step(before, after);
+    if (plan_.output == OutputKind::every_step || (plan_.output == OutputKind::every && steps_ % plan_.every == 0))
+      record(after, after);
+    if (steps_ % 64 == 0) context_.progress.advance(after.t);
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+
+  void finish(const system::State& state) {
+    if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
+    context_.progress.advance(state.t);
+  }
+
+ private:
+  void record(const system::State& before, const system::State& now) {
+    last_recorded_ = true;
+    if (!plan_.energy) return recorder_.record(now, nullptr);
+    const MechanismEnergy energy = ledger_.at(before, now);
+    recorder_.record(now, &energy);
+  }
+
+  double next_time() const {
+    if (plan_.output == OutputKind::interval) return static_cast<double>(next_) * plan_.interval;
+    return next_ < static_cast<long>(plan_.times.size()) ? plan_.times[static_cast<std::size_t>(next_)] : HUGE_VAL;
+  }
+
+  void record_between(const system::State& before, const system::State& after) {
+    const double round_off = 1e-9 * (after.t - before.t);
+    for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
+      ++next_;
+      if (t >= after.t - round_off) {
+        record(before, after);
+        continue;
+      }
+      between_.at(before, after, t, state_);
+      record(before, state_);
+    }
+  }
+
+  const TransientPlan& plan_;
+  MechanismRecorder& recorder_;
+  RunContext& context_;
+  MechanismLedger ledger_;
+  Between between_;
+  system::State state_;
+  long steps_ = 0, next_ = 0;
+  bool last_recorded_ = false;
+};
+
+/// @param state  the last accepted one
+std::string reason(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state) {
+  const std::string at =
+      report.step.worst >= 0
+          ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
+          : "";
+  std::string what, remedy;
+  switch (report.step.outcome) {
+    case integrate::StepOutcome::not_finite:
+      what = "a number that is not finite appeared" + at;
+      remedy = "look at the loads and laws that act there at that time";
+      {
+        system::MechanismEquations equations(mechanism);
+        state.t = report.failed_at + report.failed_step;
+        equations.go_to(state, model::Side::left);
+        const std::string part = equations.non_finite_part();
+        if (!part.empty()) remedy = "it comes from " + part;
+      }
+      break;
+    case integrate::StepOutcome::not_converged:
+      what = "Newton's method found no solution" + at;
+      remedy =
+          "look for a drive against a lock, for joints that leave no way to go on (a singular configuration), or allow "
+          "smaller steps";
+      break;
+    case integrate::StepOutcome::singular:
+      what = "the matrix of the step cannot be factorised";
+      remedy = "look for parts that nothing holds, or take smaller steps";
+      break;
+    case integrate::StepOutcome::too_small:
+      what = "the error asked for a step below the smallest";
+      remedy =
+          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller step, "
+          "or "
+          "a larger tolerance";
+      break;
+    case integrate::StepOutcome::accepted:
+      break;
+  }
+  return fmt::format("at t = {} s with the step {} s {}; {}", report.failed_at, report.failed_step, what, remedy);
+}
+
+}  // namespace
+
+RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
+                        RunContext& context) {
+  const TransientPlan& transient = plan.transient;
+  const AutomaticStep& step = *transient.automatic;
+  const auto& alpha = std::get<integrate::GeneralizedAlpha>(transient.method.formula);
+  integrate::NewtonPlan newton;
+  newton.projects_velocities = std::holds_alternative<integrate::PiControl>(step.plan.controller);
+  const auto stepper = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
+  const auto estimator = integrate::make_estimator(step.estimator, alpha, integrate::make_error_space(mechanism),
+                                                   transient.start, transient.duration);
+  constexpr double resolution = 1e-12;
+  integrate::MechanismTimeline timeline(mechanism, resolution * transient.duration);
+  MechanismRecorder recorder(name, plan, mechanism, context.sink);
+  MechanismObserver observer(transient, mechanism, recorder, context);
+  system::State state = transient.start;
+  const bool is_fixed = std::holds_alternative<integrate::FixedStep>(step.plan.controller);
+  if (is_fixed) {  // with steps that change it is carried over by the march
+    system::MechanismEquations equations(mechanism);
+    integrate::shift_acceleration(equations, state, stepper->shift() * step.plan.first);
+  }
+  context.progress.begin(name, transient.duration, "s of motion");
+  observer.start(state);
+  std::unique_ptr<StepRecorder> tries;
+  if (!is_fixed) tries = std::make_unique<StepRecorder>(name, step, context.sink);
+  const integrate::AdaptiveReport report =
+      integrate::march(*stepper, *estimator, step.plan, timeline, state, transient.duration, &observer, tries.get());
+  observer.finish(state);
+  context.progress.end();
+  write_events(name, timeline.events(), mechanism, context.sink);
+  RunReport run;
+  run.statistics = statistics(report, state.t);
+  run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
+  run.warnings = plan.warnings;
+  for (const auto& event : timeline.events())
+    run.findings.push_back(
+        fmt::format("\"{}\" {} at t = {:.9g} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
+                    event.has_engaged ? "locks" : "lets go", event.t,
+                    event.energy_lost > 0.0 ? fmt::format(", taking {:.4g} J", event.energy_lost) : ""));
+  if (report.march.end == integrate::MarchEnd::failed) {
+    run.status = RunStatus::failed;
+    run.message = reason(report.march, mechanism, state);
+  } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
+    run.status = RunStatus::interrupted;
+    run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);
+  }
+  return run;
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,138 @@
+#include <rubato/io/read_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace rubato::io {
+namespace {
+
+using namespace model;
+
+/// A point or vector of the model; empty where the key is missing.
+std::vector<Quantity> optional_point(TomlReader& reader, const std::string& key) {
+  return reader.optional_quantities(key).value_or(std::vector<Quantity>{});
+}
+
+/// One number in the plane, a list in space.
+std::vector<Quantity> optional_one_or_more(TomlReader& reader, const std::string& key) {
+  const toml::node* found = reader.node(key);
+  if (!found) return {};
+  if (found->is_array()) return *reader.optional_quantities(key);
+  return {*reader.optional_quantity(key)};
+}
+
+BodyDescription read_body(TomlReader& reader) {
+  BodyDescription body;
+  body.name = reader.name("name", &body.where);
+  reader.rename(fmt::format("body \"{}\"", body.name));
+  body.mass = reader.quantity("mass");
+  body.inertia = optional_one_or_more(reader, "inertia");
+  if (body.inertia.empty()) {
+    reader.refuse_misspelling_of("inertia");
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} lacks the key \"inertia\" [kg m2]; a mass that does not turn is a [[node]] with "
+                                   "a [[mass]]",
+                                   reader.what()));
+  }
+  body.position = optional_point(reader, "position");
+  if (body.position.empty()) {
+    reader.refuse_misspelling_of("position");
+    throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"position\"", reader.what()));
+  }
+  body.angle = reader.optional_quantity("angle");
+  body.velocity = optional_point(reader, "velocity");
+  body.angular_velocity = optional_one_or_more(reader, "angular_velocity");
+  reader.finish();
+  return body;
+}
+
+LockDescription read_lock(TomlReader& reader) {
+  LockDescription lock;
+  lock.where = reader.where();
+  lock.at = reader.quantity("at");
+  const auto kind = reader.optional_word("kind", {"stop", "latch"});
+  if (!kind) {
+    reader.refuse_misspelling_of("kind");
+    throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"kind\": \"stop\" or \"latch\"", reader.what()));
+  }
+  lock.is_latch = *kind == "latch";
+  lock.stiffness = reader.optional_quantity("stiffness");
+  lock.damping = reader.optional_quantity("damping");
+  if (lock.damping && !lock.stiffness)
+    throw InvalidInput(lock.damping->where,
+                       fmt::format("{}: damping goes with a stiffness; without one the lock is rigid", reader.what()));
+  reader.finish();
+  return lock;
+}
+
+/// The keys that belong to one type of joint each; others are refused with the types that take them.
+void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
+  const std::map<std::string, std::vector<std::string>> takers{{"angle", {"revolute"}},
+                                                               {"moment", {"revolute"}},
+                                                               {"displacement", {"prismatic"}},
+                                                               {"force", {"prismatic"}},
+                                                               {"axis", {"prismatic"}},
+                                                               {"length", {"distance"}},
+                                                               {"stiffness", {"revolute", "prismatic"}},
+                                                               {"damping", {"revolute", "prismatic"}},
+                                                               {"rest", {"revolute", "prismatic"}},
+                                                               {"lock", {"revolute", "prismatic"}}};
+  for (const auto& [key, types] : takers) {
+    if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
+    throw InvalidInput(reader.where(key),
+                       fmt::format("{}: \"{}\" belongs to a {} joint, and this one is {}", reader.what(), key,
+                                   types.size() > 1 ? types[0] + " or " + types[1] : types[0], type));
+  }
+}
+
+JointDescription read_joint(TomlReader& reader, std::size_t number) {
+  JointDescription joint;
+  joint.name = reader.optional_text("name").value_or(fmt::format("joint{}", number));
+  joint.where = reader.where("name");
+  reader.rename(fmt::format("joint \"{}\"", joint.name));
+  const std::vector<std::string> types{"rigid", "revolute", "prismatic", "distance"};
+  const auto type = reader.optional_word("type", types);
+  if (!type) {
+    reader.refuse_misspelling_of("type");
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} lacks the key \"type\": \"revolute\", \"prismatic\", \"rigid\" or "
+                                   "\"distance\"",
+                                   reader.what()));
+  }
+  joint.type = static_cast<JointDescription::Type>(std::find(types.begin(), types.end(), *type) - types.begin());
+  refuse_foreign_keys(reader, *type);
+  joint.between = reader.between("between", joint.between_where);
+  joint.at = optional_point(reader, "at");
+  joint.at_where = reader.where("at");
+  joint.to = optional_point(reader, "to");
+  joint.to_where = reader.where("to");
+  joint.axis = optional_point(reader, "axis");
+  joint.axis_where = reader.where("axis");
+  const bool is_prismatic = joint.type == JointDescription::Type::prismatic;
+  if (is_prismatic && joint.axis.empty()) {
+    reader.refuse_misspelling_of("axis");
+    throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"axis\"", reader.what()));
+  }
+  joint.value = is_prismatic ? reader.optional_quantity("displacement") : reader.optional_quantity("angle");
+  joint.drive = is_prismatic ? reader.optional_quantity("force") : reader.optional_quantity("moment");
+  joint.length = reader.optional_quantity("length");
+  joint.stiffness = reader.optional_quantity("stiffness");
+  joint.rest = reader.optional_quantity("rest");
+  joint.damping = reader.optional_quantity("damping");
+  if (joint.rest && !joint.stiffness)
+    throw InvalidInput(joint.rest->where, fmt::format("{}: rest goes with a stiffness", reader.what()));
+  if (auto lock = reader.optional_table("lock", fmt::format("{}: lock", reader.what()))) joint.lock = read_lock(*lock);
+  reader.finish();
+  return joint;
+}
+
+}  // namespace
+
+void read_mechanism(TomlReader& root, ModelDescription& model) {
+  for (TomlReader& reader : root.tables("body")) model.bodies.push_back(read_body(reader));
+  for (TomlReader& reader : root.tables("joint")) model.joints.push_back(read_joint(reader, model.joints.size() + 1));
+}
+
+}  // namespace rubato::io

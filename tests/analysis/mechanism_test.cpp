@@ -1,0 +1,158 @@
+#include <rubato/analysis/run_study.hpp>
+#include <rubato/core/error.hpp>
+#include <rubato/io/read_study.hpp>
+#include <rubato/model/build_mechanism.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <support/double_pendulum.hpp>
+#include <support/memory_sink.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace rubato {
+namespace {
+
+struct Ran {
+  testing::MemorySink sink;
+  analysis::RunReport report;
+};
+
+Ran run(const std::string& text) {
+  const auto study = io::read_study_text(text, "study.toml");
+  const numerics::Parameters overrides, parameters = model::evaluate_parameters(study.parameters);
+  const system::Mechanism mechanism(model::build_mechanism(study.model, parameters));
+  const system::LocallyNonlinear empty({});
+  const analysis::StudyInput input{study, overrides, parameters, empty, &mechanism};
+  Ran ran;
+  testing::QuietProgress progress;
+  const std::atomic<bool> stop{false};
+  analysis::RunContext context{ran.sink, progress, stop};
+  ran.report = analysis::run_analysis(study.analyses.front(), input, context);
+  return ran;
+}
+
+std::string example(const std::string& name) {
+  std::ifstream file(std::string(RUBATO_EXAMPLES) + "/" + name + "/study.toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string replaced(std::string text, const std::string& piece, const std::string& other) {
+  const std::size_t at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  return text.replace(at, piece.size(), other);
+}
+
+TEST(MechanismStudies, RunTheDoublePendulumOfThePaper) {
+  const Ran ran = run(example("double-pendulum"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("motion");
+  EXPECT_NEAR(double(table.rows.size() - 1), 877.0, 0.03 * 877.0);
+  const auto& last = table.rows.back();
+  EXPECT_DOUBLE_EQ(last[0], 5.0);
+  const auto exact = testing::double_pendulum_at(5.0);
+  const char* const names[] = {"1.x", "1.y", "2.x", "2.y"};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(last[table.column("position", names[i])], exact[i], 2e-3);
+  // Tensions pull. They are as exact as the motion, times the masses and (10 rad/s)^2.
+  EXPECT_NEAR(last[table.column("reaction_tension", "upper")], 52.163, 0.3);
+  EXPECT_NEAR(last[table.column("reaction_tension", "lower")], 6.797, 0.3);
+  const auto& ledger = ran.sink.tables.at("motion.energy");
+  EXPECT_NEAR(ledger.rows.back()[ledger.column("residue")], -0.022, 0.022);
+}
+
+TEST(MechanismStudies, RunTheLockingBarsOfThePaper) {
+  const Ran ran = run(example("locking-bars"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("motion");
+  EXPECT_NEAR(table.rows.front()[table.column("angle", "B")], 1.0471975511965976, 1e-12);
+  EXPECT_NEAR(table.rows.back()[table.column("angle", "B")], 2.436617153, 2.7e-3);
+  const auto& events = ran.sink.tables.at("motion.events");
+  ASSERT_EQ(events.rows.size(), 2u);
+  EXPECT_NEAR(events.rows[0][0], 1.371521056, 2e-5);
+  const auto& ledger = ran.sink.tables.at("motion.energy");
+  EXPECT_LT(std::abs(ledger.rows.back()[ledger.column("residue")]), 8.0);
+  EXPECT_EQ(ran.report.findings.size(), 2u);
+}
+
+TEST(MechanismStudies, WriteRowsAtRequestedTimesWithoutBendingTheSteps) {
+  const std::string text =
+      replaced(example("double-pendulum"), "duration = 5.0", "output = { interval = 0.5 }\nduration = 5.0");
+  const Ran ran = run(text);
+  const auto& table = ran.sink.tables.at("motion");
+  ASSERT_EQ(table.rows.size(), 11u);
+  const auto at_two = testing::double_pendulum_at(2.0);
+  EXPECT_DOUBLE_EQ(table.rows[4][0], 2.0);
+  EXPECT_NEAR(table.rows[4][table.column("position", "2.x")], at_two[2], 2e-3);
+  // Between the ends of a step the links stay as long as the quintic is exact.
+  const double x = table.rows[5][table.column("position", "1.x")], y = table.rows[5][table.column("position", "1.y")];
+  EXPECT_NEAR(std::hypot(x, y), 1.0, 1e-6);
+}
+
+TEST(MechanismStudies, BookWhatARigidLatchTakes) {
+  const Ran ran = run(replaced(example("locking-bars"), "kind = \"stop\", stiffness = 1e7", "kind = \"latch\""));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& ledger = ran.sink.tables.at("motion.energy");
+  const auto& last = ledger.rows.back();
+  EXPECT_GT(last[ledger.column("lock_dissipated")], 0.0);
+  EXPECT_LE(last[ledger.column("residue")], 1e-6);
+  // HHT with alpha = -0.15 damps the vibrations that the lock leaves, less than a hundredth of 4188 J.
+  EXPECT_GT(last[ledger.column("residue")], -41.9);
+}
+
+TEST(MechanismStudies, RefuseAMethodThatDoesNotDampTheMultipliersUnlessForced) {
+  const std::string undamped = replaced(example("double-pendulum"), "alpha = -0.15", "alpha = 0.0");
+  EXPECT_THROW(run(undamped), InvalidInput);
+  EXPECT_NO_THROW(run(replaced(undamped, "duration = 5.0", "duration = 0.1\nallow_unstable = true")));
+}
+
+TEST(MechanismStudies, MoveWhatIsNotAssembledAndSaySo) {
+  const Ran ran = run(replaced(example("double-pendulum"), "at = [0.0, 0.0]", "at = [0.0, 0.0]\nlength = 1.01"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done);
+  ASSERT_EQ(ran.report.warnings.size(), 1u);
+  EXPECT_NE(ran.report.warnings[0].find("the positions given do not satisfy the joints"), std::string::npos);
+  EXPECT_NE(ran.report.warnings[0].find("by 0.01"), std::string::npos);
+}
+
+TEST(MechanismStudies, RefuseWhatCannotBeAssembledAndSayHowFarApart) {
+  const std::string apart =
+      replaced(example("double-pendulum"), "[gravity]",
+               "[[joint]]\nname = \"stay\"\ntype = \"distance\"\nbetween = [\"ground\", \"2\"]\nat = [9.0, 0.0]\n"
+               "length = 1.0\n\n[gravity]");
+  try {
+    run(apart);
+    FAIL() << "assembled";
+  } catch (const InvalidInput& fault) {
+    EXPECT_NE(std::string(fault.what()).find("the joints cannot be assembled"), std::string::npos) << fault.what();
+  }
+}
+
+TEST(MechanismStudies, NameTheLawThatReturnsANumberThatIsNotFinite) {
+  const std::string at_start = replaced(example("locking-bars"), "moment = 2000.0", "moment = \"log(t - 1)\"");
+  try {
+    run(at_start);
+    FAIL() << "started";
+  } catch (const InvalidInput& fault) {
+    EXPECT_NE(std::string(fault.what()).find("the law of \"B\" is not finite"), std::string::npos) << fault.what();
+  }
+  const Ran later = run(replaced(example("locking-bars"), "moment = 2000.0", "moment = \"2000*sqrt(0.1 - t)\""));
+  EXPECT_EQ(later.report.status, analysis::RunStatus::failed);
+  EXPECT_NE(later.report.message.find("the law of \"B\""), std::string::npos) << later.report.message;
+  EXPECT_FALSE(later.sink.tables.at("motion").rows.empty());
+}
+
+TEST(MechanismStudies, RefuseAnalysesOfStructures) {
+  const std::string text = example("double-pendulum");
+  const std::string modes =
+      text.substr(0, text.find("[[analysis]]")) + "[[analysis]]\nname = \"m\"\ntype = \"modes\"\n";
+  EXPECT_THROW(run(modes), InvalidInput);
+}
+
+}  // namespace
+}  // namespace rubato
