@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
+#include <rubato/model/joints/plane_spring.hpp>
 
 #include <support/mechanism_differences.hpp>
 
@@ -67,6 +68,20 @@ TEST(PlaneCoordinates, PushOnlyInThePhaseOfTheirLock) {
   EXPECT_NE(force[5], 0.0);
   open->force(at.motion(), force);
   EXPECT_EQ(force[5], 0.0);
+}
+
+TEST(CoordinateSprings, PullTwoNumbersTogetherOrOneToTheGround) {
+  const RandomMotion at(2, 5);
+  const model::NodeNumber first{3, 0}, second{8, 5}, still{};
+  for (const auto& other : {second, still}) {
+    const auto spring = model::make_coordinate_spring("k", first, other, 4.0, 0.2);
+    testing::expect_consistent_tangent(*spring, at, 10.0);
+    testing::expect_force_of_energy(*spring, at, 10.0);
+    testing::expect_consistent_tangent(*model::make_coordinate_damper("c", first, other, 3.0), at, 10.0);
+  }
+  double force[2];
+  model::make_coordinate_spring("k", first, still, 4.0, 0.2)->force(at.motion(), force);
+  EXPECT_DOUBLE_EQ(force[0], 4.0 * (at.q[3] - 0.2));
 }
 
 TEST(PlaneCoordinates, RefuseAFormulaOfUnknownNames) {
