@@ -56,7 +56,8 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                               {time},
                               {{"type", "transient"},
                                {"method", plan.transient.method.name},
-                               {"step", plan.summary()},
+                               {"step", plan.transient.automatic ? summary(*plan.transient.automatic)
+                                                                 : fmt::format("{} s", plan.transient.step)},
                                {"duration", fmt::format("{} s", plan.transient.duration)}}};
   observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
   add_joints(layout);
