@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace rubato::analysis {
 namespace {
 
@@ -50,6 +52,27 @@ TEST(StructureTables, CallASupportedNodeOfTrussesPinned) {
   testing::MemorySink sink;
   write_structure("run", model::build(description, {}).structure, sink);
   EXPECT_EQ(sink.tables.at("run.nodes").rows[0].back(), 2);
+}
+
+TEST(StructureTables, TellWhereABodyCarriesItsJoints) {
+  model::Mechanism m(2);
+  const Index crank = m.add_node("crank", {0.5, 0.0, std::numbers::pi / 2.0});
+  const model::PlanePoint at = m.plane_point(crank, 0.0, 0.0), still = m.plane_point(0, 0.0, 0.0);
+  m.lines = {{model::DrawnLine::Kind::body, {m.plane_node(crank), {}}, at}, {model::DrawnLine::Kind::link, at, still}};
+  testing::MemorySink sink;
+  write_structure("run", m, sink);
+  const auto& nodes = sink.tables.at("run.nodes").rows;
+  ASSERT_EQ(nodes.size(), 3u);
+  EXPECT_EQ(nodes[0], (std::vector<double>{0, 0.5, 0.0, 0.0, 0, 0, 0.0, 0.0}));
+  EXPECT_EQ(nodes[1][5], 0.0);           // carried by the crank
+  EXPECT_NEAR(nodes[1][6], 0.0, 1e-16);  // (-0.5, 0) of the world, in axes that are turned by a right angle
+  EXPECT_NEAR(nodes[1][7], 0.5, 1e-16);
+  EXPECT_EQ(nodes[2][5], -1.0);
+  EXPECT_EQ(nodes[2][4], 2.0);  // pinned
+  const auto& lines = sink.tables.at("run.lines").rows;
+  EXPECT_EQ(lines[0], (std::vector<double>{1, 0, 1, 1}));
+  EXPECT_EQ(lines[1], (std::vector<double>{2, 1, 2, 2}));
+  EXPECT_EQ(sink.tables.at("run.nodes").layout.attributes.back().second, "3");
 }
 
 TEST(StructureTables, AreNotWrittenForCoordinates) {

@@ -205,6 +205,7 @@ RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyIn
                                                         *input.mechanism, input.parameters),
                                          *input.mechanism, context)
                          : std::visit(Run{analysis, input, context}, analysis.task);
+  if (input.mechanism) write_structure(analysis.name, input.mechanism->model(), context.sink);
   const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();
   if (is_drawn(analysis) && nodes > 0 && nodes <= most_drawn_nodes)
     write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);

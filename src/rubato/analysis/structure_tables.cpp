@@ -81,4 +81,78 @@ void write_structure(const std::string& analysis, const model::Structure& struct
   }
 }
 
+void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink) {
+  if (mechanism.dimension != 2 || mechanism.lines.empty() || mechanism.nodes.size() > most_drawn_nodes) return;
+  struct Point {
+    std::string name;
+    double carrier;
+    std::array<double, 2> at, offset;
+    Support support;
+  };
+  std::vector<Point> points;
+  for (std::size_t i = 1; i < mechanism.nodes.size(); ++i) {  // the first is the ground
+    const auto& node = mechanism.nodes[i];
+    const bool is_still = node.place[0] == ground && node.place[1] == ground;
+    points.push_back({node.name,
+                      static_cast<double>(points.size()),
+                      {node.numbers[0], node.numbers[1]},
+                      {0.0, 0.0},
+                      is_still ? pinned : free_to_move});
+  }
+  std::vector<double> q;
+  for (const auto& node : mechanism.nodes) q.insert(q.end(), node.numbers.begin(), node.numbers.begin() + 3);
+  const auto place_of = [&](const model::PlanePoint& point) {
+    const double carrier = static_cast<double>(point.node.q / model::plane_numbers) - 1.0;
+    if (carrier >= 0.0 && point.offset[0] == 0.0 && point.offset[1] == 0.0) return carrier;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].carrier == carrier && points[i].offset == point.offset) return static_cast<double>(i);
+    const auto now = point.at(q.data());
+    const std::string of = mechanism.nodes[static_cast<std::size_t>(point.node.q / model::plane_numbers)].name;
+    points.push_back({of + ":" + std::to_string(points.size() + 1),
+                      carrier,
+                      {now.x, now.y},
+                      point.offset,
+                      carrier < 0.0 ? pinned : free_to_move});
+    return static_cast<double>(points.size() - 1);
+  };
+  std::vector<std::array<double, 4>> ends;
+  for (const model::DrawnLine& line : mechanism.lines)
+    ends.push_back({static_cast<double>(ends.size() + 1), place_of(line.first), place_of(line.second),
+                    static_cast<double>(line.kind)});
+
+  std::vector<std::string> names;
+  for (const Point& point : points) names.push_back(point.name);
+  const auto number = [](const char* name, const char* unit, const char* description) {
+    return results::Block{name, unit, description, "", {}};
+  };
+  const auto nodes = sink.open(
+      {analysis,
+       "nodes",
+       "node",
+       {{"node", "1", "name of the node or point", "", {}, names},
+        number("x", "m", "position along x at the start"),
+        number("y", "m", "position along y at the start"),
+        number("z", "m", "position along z at the start"),
+        {"support", "1", "what is fixed", "", {}, {"free", "held", "pinned", "clamped"}},
+        number("carrier", "1", "row of the node that carries it; -1: the ground"),
+        number("offset_x", "m", "place in the axes of the carrier"),
+        number("offset_y", "m", "place in the axes of the carrier")},
+       {{"type", "nodes"}, {"motion", "position"}, {"degrees_of_freedom", std::to_string(mechanism.size())}}});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& p = points[i];
+    const std::array<double, 8> row{static_cast<double>(i),         p.at[0],   p.at[1],     0.0,
+                                    static_cast<double>(p.support), p.carrier, p.offset[0], p.offset[1]};
+    nodes->append(row);
+  }
+  const auto lines = sink.open({analysis,
+                                "lines",
+                                "line",
+                                {number("line", "1", "number of the line"),
+                                 {"first", "1", "node where it begins", "", {}, names},
+                                 {"second", "1", "node where it ends", "", {}, names},
+                                 {"kind", "1", "what it is", "", {}, {"beam", "body", "link"}}},
+                                {{"type", "lines"}}});
+  for (const auto& row : ends) lines->append(row);
+}
+
 }  // namespace rubato::analysis

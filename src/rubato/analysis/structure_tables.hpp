@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/mechanism.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/results/sink.hpp>
 
@@ -14,5 +15,11 @@ inline constexpr std::size_t most_drawn_nodes = 20'000;
 /// beside the results of an analysis: what a picture of the structure needs. Writes nothing without elements or beyond
 /// most_drawn_nodes.
 void write_structure(const std::string& analysis, const model::Structure& structure, results::Sink& sink);
+
+/// Likewise of a mechanism in the plane: its nodes, the points of bodies and of the ground at which lines end, each
+/// with the node that carries it (`carrier`, a row; itself, or -1 for the ground) and its place there (`offset_x`,
+/// `offset_y` [m], in the axes of that node); and lines of the kinds beam, body and link. The main table tells
+/// positions.
+void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink);
 
 }  // namespace rubato::analysis

@@ -139,6 +139,8 @@ class MechanismBuilder {
     const double length = (structure.positions[static_cast<std::size_t>(element.second)] -
                            structure.positions[static_cast<std::size_t>(element.first)])
                               .norm();
+    mechanism_.lines.push_back(
+        {DrawnLine::Kind::beam, {mechanism_.plane_node(first), {}}, {mechanism_.plane_node(second), {}}});
     mechanism_.elements.push_back(
         make_plane_beam(fmt::format("{}-{}", mechanism_.nodes[static_cast<std::size_t>(first)].name,
                                     mechanism_.nodes[static_cast<std::size_t>(second)].name),
@@ -248,6 +250,9 @@ class MechanismBuilder {
     extend(to[0], to[1]);
     const PlanePoint a = mechanism_.plane_point(first.node, at[0], at[1]);
     const PlanePoint b = mechanism_.plane_point(second.node, to[0], to[1]);
+    draw(first, a);
+    draw(second, b);
+    if (is_distance) mechanism_.lines.push_back({DrawnLine::Kind::link, a, b});
     const double relative = mechanism_.nodes[static_cast<std::size_t>(second.node)].numbers[2] -
                             mechanism_.nodes[static_cast<std::size_t>(first.node)].numbers[2];
     PlaneCoordinate s;
@@ -269,6 +274,12 @@ class MechanismBuilder {
         break;
     }
     take_coordinate(joint, part, s);
+  }
+
+  /// A body reaches from its centre of mass to its joints.
+  void draw(const End& end, const PlanePoint& point) {
+    if (end.is_ground || (point.offset[0] == 0.0 && point.offset[1] == 0.0)) return;
+    mechanism_.lines.push_back({DrawnLine::Kind::body, {point.node, {}}, point});
   }
 
   void take_distance(const JointDescription& joint, const std::string& part, const PlanePoint& a, const PlanePoint& b,

@@ -42,6 +42,13 @@ struct JointCoordinate {
   PlaneCoordinate s;
 };
 
+/// A straight line between two points of a mechanism in the plane, for pictures.
+struct DrawnLine {
+  enum class Kind { beam, body, link };
+  Kind kind = Kind::beam;
+  PlanePoint first, second;
+};
+
 /// Nodes, what makes forces between them and what constrains them, with values for everything. Mass is constant: bodies
 /// have their node at the centre of mass, and angular velocities are those of body axes.
 struct Mechanism {
@@ -57,6 +64,7 @@ struct Mechanism {
   std::vector<NodeForce> forces;
   Axis gravity = Axis::Zero();  ///< [m/s2]
   double reference = 0.0;       ///< characteristic size for error measures [m sqrt(kg)]; 0: none
+  std::vector<DrawnLine> lines;
 
   explicit Mechanism(int dimension_ = 2);
 

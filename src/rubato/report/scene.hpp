@@ -15,8 +15,11 @@ struct Scene {
   std::array<std::vector<double>, 3> position;  ///< reference positions along x, y and z, [p] each [m]
   std::vector<std::string> support;             ///< "free", "held", "pinned", "clamped", [p] or empty
   std::vector<double> first, second;            ///< nodes that each line joins, [lines]
-  std::vector<std::string> kinds;               ///< of the lines, or empty
-  bool is_absolute = false;                     ///< the values are positions instead of displacements
+  /// Points that a node carries: its number (their own, or -1 where nothing does), and their place in its axes, [p]
+  /// each [m]; empty where every node moves by itself.
+  std::vector<double> carrier, offset_x, offset_y;
+  std::vector<std::string> kinds;  ///< of the lines, or empty
+  bool is_absolute = false;        ///< the values are positions instead of displacements
 
   /// The degrees of freedom that the results hold: axes 0 to 2 are along x, y, z, 3 to 5 rotations about them. [d]
   std::vector<std::size_t> place_node, place_axis;

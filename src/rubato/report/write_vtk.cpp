@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -49,6 +50,12 @@ std::string frame_of(const Scene& scene, const std::vector<double>& values, cons
       for (std::size_t axis = 0; axis < 3; ++axis) motion[node][axis] = scene.position[axis][node];
   for (std::size_t place = 0; place < values.size(); ++place)
     motion[scene.place_node[place]][scene.place_axis[place]] = values[place];
+  for (std::size_t node = 0; node < scene.carrier.size(); ++node) {
+    if (scene.carrier[node] < 0.0 || scene.carrier[node] == static_cast<double>(node)) continue;
+    const std::array<double, 6>& carrier = motion[static_cast<std::size_t>(scene.carrier[node])];
+    const double c = std::cos(carrier[5]), s = std::sin(carrier[5]), x = scene.offset_x[node], y = scene.offset_y[node];
+    motion[node] = {carrier[0] + c * x - s * y, carrier[1] + s * x + c * y, 0.0, 0.0, 0.0, carrier[5]};
+  }
   std::string points, displacements, rotations;
   for (std::size_t node = 0; node < nodes; ++node) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

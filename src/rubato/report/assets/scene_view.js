@@ -10,6 +10,13 @@ function node_motion(scene, values) {
   }
   const [nodes, axes] = scene.places;
   values.forEach((value, place) => { motion[6 * nodes[place] + axes[place]] = value ?? 0; });
+  scene.carrier.forEach((carrier, node) => {  // points that move with a node in the plane
+    if (carrier === node || carrier < 0) return;
+    const [c, s] = [Math.cos(motion[6 * carrier + 5]), Math.sin(motion[6 * carrier + 5])];
+    const [x, y] = [scene.offset[0][node], scene.offset[1][node]];
+    motion[6 * node] = motion[6 * carrier] + c * x - s * y;
+    motion[6 * node + 1] = motion[6 * carrier + 1] + s * x + c * y;
+  });
   return motion;
 }
 
