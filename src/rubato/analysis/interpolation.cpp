@@ -4,6 +4,13 @@
 
 namespace rubato::analysis {
 
+double lagrange_weight(std::span<const double> times, std::size_t i, double t) {
+  double weight = 1.0;
+  for (std::size_t j = 0; j < times.size(); ++j)
+    if (j != i) weight *= (t - times[j]) / (times[i] - times[j]);
+  return weight;
+}
+
 StepInterpolation::StepInterpolation(const system::LocallyNonlinear& system, int order)
     : system_(system),
       equilibrium_(system),
@@ -58,10 +65,10 @@ void StepInterpolation::at(double t, system::State& state, Vector& acceleration)
 }
 
 void StepInterpolation::through_knots(double t, system::State& state, Vector& acceleration) {
+  std::array<double, most_knots> times{};
+  for (std::size_t i = 0; i < count_; ++i) times[i] = knot(i).state.t;
   for (std::size_t i = 0; i < count_; ++i) {
-    double weight = 1.0;  // of Lagrange
-    for (std::size_t j = 0; j < count_; ++j)
-      if (j != i) weight *= (t - knot(j).state.t) / (knot(i).state.t - knot(j).state.t);
+    const double weight = lagrange_weight({times.data(), count_}, i, t);
     const Knot& end = knot(i);
     if (i == 0) {
       state.q = weight * end.state.q;

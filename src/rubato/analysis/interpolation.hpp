@@ -3,8 +3,12 @@
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <array>
+#include <span>
 
 namespace rubato::analysis {
+
+/// The weight of the value at times[i] in the polynomial through the values at all of them, at t (Lagrange).
+double lagrange_weight(std::span<const double> times, std::size_t i, double t);
 
 /// States between the ends of an accepted step.
 ///

@@ -97,9 +97,9 @@ void MechanismRecorder::add_joints(results::TableLayout& layout) {
   }
 }
 
-void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy) {
+void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
   balanced_ = state;
-  if (!integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
+  if (!is_balanced && !integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
   mechanism_.coordinate_values(state.q, values_);
   const auto& joints = mechanism_.model().joint_coordinates;
   for (Vector* all : {&positions_, &velocities_, &accelerations_})

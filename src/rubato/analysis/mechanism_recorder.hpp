@@ -25,7 +25,8 @@ class MechanismRecorder {
                     results::Sink& sink);
 
   /// @param energy  null without a ledger
-  void record(const system::State& state, const MechanismEnergy* energy);
+  /// @param is_balanced  acceleration and multipliers of the state are those to tell: between the ends of a step
+  void record(const system::State& state, const MechanismEnergy* energy, bool is_balanced = false);
   long rows() const { return count_; }
 
  private:

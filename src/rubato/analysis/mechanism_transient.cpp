@@ -1,3 +1,4 @@
+#include <rubato/analysis/mechanism_interpolation.hpp>
 #include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/integrate/adaptive_march.hpp>
@@ -13,37 +14,6 @@ namespace rubato::analysis {
 namespace {
 
 using OutputKind = model::OutputDescription::Kind;
-
-/// States within a step: along the travel of the step by the quintic through travel, velocity and acceleration of both
-/// ends (error h^6), multipliers linear. Constraints hold at the ends; between them to the error of the interpolation.
-class Between {
- public:
-  explicit Between(const system::Mechanism& mechanism) : mechanism_(mechanism), travel_(mechanism.size()) {}
-
-  void at(const system::State& before, const system::State& after, double t, system::State& state) {
-    const double h = after.t - before.t, s = (t - before.t) / h, s2 = s * s, s3 = s2 * s;
-    mechanism_.difference(before.q, after.q, travel_);
-    const double q1 = s3 * (10.0 + s * (-15.0 + 6.0 * s));
-    const double v0 = s + s3 * (-6.0 + s * (8.0 - 3.0 * s)), v1 = s3 * (-4.0 + s * (7.0 - 3.0 * s));
-    const double a0 = 0.5 * s2 * (1.0 + s * (-3.0 + s * (3.0 - s))), a1 = 0.5 * s3 * (1.0 + s * (-2.0 + s));
-    const double dq1 = 30.0 * s2 * (1.0 + s * (-2.0 + s));
-    const double dv0 = 1.0 + s2 * (-18.0 + s * (32.0 - 15.0 * s)), dv1 = s2 * (-12.0 + s * (28.0 - 15.0 * s));
-    const double da0 = s + s2 * (-4.5 + s * (6.0 - 2.5 * s)), da1 = s2 * (1.5 + s * (-4.0 + 2.5 * s));
-    state = before;
-    state.t = t;
-    state.v = (dq1 / h) * travel_ + dv0 * before.v + dv1 * after.v +
-              h * (da0 * before.acceleration + da1 * after.acceleration);
-    travel_ = q1 * travel_ + h * (v0 * before.v + v1 * after.v) +
-              (h * h) * (a0 * before.acceleration + a1 * after.acceleration);
-    mechanism_.retract(before.q, travel_, state.q);
-    state.acceleration = (1.0 - s) * before.acceleration + s * after.acceleration;
-    state.multiplier = (1.0 - s) * before.multiplier + s * after.multiplier;
-  }
-
- private:
-  const system::Mechanism& mechanism_;
-  Vector travel_;
-};
 
 class MechanismObserver final : public integrate::Observer {
  public:
@@ -75,11 +45,11 @@ class MechanismObserver final : public integrate::Observer {
   }
 
  private:
-  void record(const system::State& before, const system::State& now) {
+  void record(const system::State& before, const system::State& now, bool is_balanced = false) {
     last_recorded_ = true;
-    if (!plan_.energy) return recorder_.record(now, nullptr);
+    if (!plan_.energy) return recorder_.record(now, nullptr, is_balanced);
     const MechanismEnergy energy = ledger_.at(before, now);
-    recorder_.record(now, &energy);
+    recorder_.record(now, &energy, is_balanced);
   }
 
   double next_time() const {
@@ -89,14 +59,15 @@ class MechanismObserver final : public integrate::Observer {
 
   void record_between(const system::State& before, const system::State& after) {
     const double round_off = 1e-9 * (after.t - before.t);
+    between_.take(before, after);
     for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
       ++next_;
       if (t >= after.t - round_off) {
         record(before, after);
         continue;
       }
-      between_.at(before, after, t, state_);
-      record(before, state_);
+      between_.at(t, state_);
+      record(before, state_, true);
     }
   }
 
@@ -104,7 +75,7 @@ class MechanismObserver final : public integrate::Observer {
   MechanismRecorder& recorder_;
   RunContext& context_;
   MechanismLedger ledger_;
-  Between between_;
+  MechanismInterpolation between_;
   system::State state_;
   long steps_ = 0, next_ = 0;
   bool last_recorded_ = false;

@@ -1,0 +1,60 @@
+#include <rubato/analysis/interpolation.hpp>
+#include <rubato/analysis/mechanism_interpolation.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+
+#include <algorithm>
+
+namespace rubato::analysis {
+
+MechanismInterpolation::MechanismInterpolation(const system::Mechanism& mechanism)
+    : mechanism_(mechanism), equations_(mechanism), travel_(mechanism.size()), part_(mechanism.size()) {}
+
+void MechanismInterpolation::add(const system::State& state, model::Side side) {
+  newest_ = (newest_ + 1) % most_knots;
+  count_ = std::min(count_ + 1, most_knots);
+  Knot& newest = knot(0);
+  newest.state = state;
+  newest.side = side;
+  newest.is_balanced = false;
+}
+
+void MechanismInterpolation::take(const system::State& before, const system::State& after) {
+  // A restart of the march leaves other accelerations, and a lock another phase or other velocities.
+  const bool goes_on = count_ > 0 && knot(0).state.t == before.t && knot(0).state.v == before.v &&
+                       knot(0).state.phase == before.phase && last_acceleration_ == before.acceleration;
+  if (!goes_on) {
+    count_ = 0;
+    add(before, model::Side::right);
+  }
+  add(after, model::Side::left);
+  last_acceleration_ = after.acceleration;
+}
+
+void MechanismInterpolation::at(double t, system::State& state) {
+  std::array<double, most_knots> times{};
+  for (std::size_t age = 0; age < count_; ++age) {
+    Knot& end = knot(age);
+    times[age] = end.state.t;
+    if (end.is_balanced) continue;
+    const system::State known = end.state;
+    if (!integrate::find_acceleration(equations_, end.state, end.side)) end.state = known;
+    end.is_balanced = true;
+  }
+  const system::State& before = knot(1).state;
+  state = before;
+  state.t = t;
+  travel_.setZero();
+  for (Vector* values : {&state.v, &state.acceleration, &state.multiplier}) values->setZero();
+  for (std::size_t age = 0; age < count_; ++age) {
+    const double weight = lagrange_weight({times.data(), count_}, age, t);
+    const system::State& end = knot(age).state;
+    mechanism_.difference(before.q, end.q, part_);
+    travel_ += weight * part_;
+    state.v += weight * end.v;
+    state.acceleration += weight * end.acceleration;
+    state.multiplier += weight * end.multiplier;
+  }
+  mechanism_.retract(before.q, travel_, state.q);
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <array>
+
+namespace rubato::analysis {
+
+/// States of a mechanism between the ends of an accepted step: travel from the start of the step, velocity,
+/// acceleration and multipliers of equilibrium each by the polynomial through the last four ends of steps (error h^4;
+/// fewer after the start, a jump of the loads or a lock). It stays within 1.7 times its data, as StepInterpolation does
+/// for structures, where steps pass over fast modes of beams. Constraints hold at the ends; between them to its error.
+class MechanismInterpolation {
+ public:
+  explicit MechanismInterpolation(const system::Mechanism& mechanism);
+
+  /// Takes an accepted step; every step of the march must be given.
+  void take(const system::State& before, const system::State& after);
+  /// The state at t in [before.t, after.t], with acceleration and multipliers.
+  void at(double t, system::State& state);
+
+ private:
+  struct Knot {
+    system::State state;
+    model::Side side = model::Side::left;
+    bool is_balanced = false;  ///< acceleration and multipliers are found when they are asked for
+  };
+  static constexpr std::size_t most_knots = 4;
+
+  Knot& knot(std::size_t age) { return knots_[(newest_ + most_knots - age) % most_knots]; }
+  void add(const system::State& state, model::Side side);
+
+  const system::Mechanism& mechanism_;
+  system::MechanismEquations equations_;
+  std::array<Knot, most_knots> knots_;
+  std::size_t newest_ = 0, count_ = 0;
+  Vector last_acceleration_;  // as the march left it at the end of the last step
+  Vector travel_, part_;
+};
+
+}  // namespace rubato::analysis
