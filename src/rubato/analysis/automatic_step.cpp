@@ -11,14 +11,6 @@
 namespace rubato::analysis {
 namespace {
 
-double positive(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
-                const numerics::Parameters& parameters) {
-  if (!quantity) return otherwise;
-  const double value = model::evaluate(*quantity, parameters, what);
-  if (!(value > 0.0)) throw InvalidInput(quantity->where, fmt::format("{} must be positive, got {}", what, value));
-  return value;
-}
-
 double shortest_period(const system::LocallyNonlinear& system) {
   double fastest = 0.0;
   for (const auto& term : system.loads().terms())
@@ -56,7 +48,7 @@ double largest_step(const std::string& title, const model::StepDescription& desc
                     const integrate::Method& method, const system::LocallyNonlinear& system,
                     const numerics::Parameters& parameters, double duration, bool allow_unstable) {
   const double safe = std::min(duration / 50.0, shortest_period(system) / 6.0);
-  const double largest = std::min(duration, positive(description.largest, safe, title + "largest", parameters));
+  const double largest = std::min(duration, positive_or(description.largest, safe, title + "largest", parameters));
   if (allow_unstable) return largest;
   const integrate::ModelStability limit = integrate::stability_of(method, system);
   if (limit.step >= largest) return largest;
@@ -74,21 +66,20 @@ double largest_step(const std::string& title, const model::StepDescription& desc
 
 }  // namespace
 
-AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
-                                  const integrate::Method& method, const system::LocallyNonlinear& system,
-                                  const system::State& start, const numerics::Parameters& parameters, double duration,
-                                  bool allow_unstable) {
-  const std::string title = analysis + "step: ";
-  AutomaticStep step;
-  step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
-  const double reference = positive(description.reference, 0.0, title + "reference", parameters);
-  integrate::StepPlan& plan = step.plan;
-  plan.controller = controller_of(description.controller);
-  plan.locate_events = description.locate_events;
-  plan.rebuild = description.rebuild;
-  plan.smallest = positive(description.smallest, 1e-12 * duration, title + "smallest", parameters);
-  plan.largest = largest_step(title, description, method, system, parameters, duration, allow_unstable);
-  plan.first = positive(description.first, 0.0, title + "first", parameters);
+double positive_or(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
+                   const numerics::Parameters& parameters) {
+  if (!quantity) return otherwise;
+  const double value = model::evaluate(*quantity, parameters, what);
+  if (!(value > 0.0)) throw InvalidInput(quantity->where, fmt::format("{} must be positive, got {}", what, value));
+  return value;
+}
+
+void plan_step_range(const std::string& title, const model::StepDescription& description,
+                     const numerics::Parameters& parameters, double duration, double largest,
+                     integrate::StepPlan& plan) {
+  plan.smallest = positive_or(description.smallest, 1e-12 * duration, title + "smallest", parameters);
+  plan.largest = largest;
+  plan.first = positive_or(description.first, 0.0, title + "first", parameters);
   if (!(plan.smallest <= plan.largest))
     throw InvalidInput(
         description.smallest ? description.smallest->where : description.where,
@@ -100,6 +91,22 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   if (std::holds_alternative<integrate::FixedStep>(plan.controller) && !description.first)
     throw InvalidInput(description.where,
                        title + "the controller fixed keeps the first step; give it, first = ... [s]");
+}
+
+AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
+                                  const integrate::Method& method, const system::LocallyNonlinear& system,
+                                  const system::State& start, const numerics::Parameters& parameters, double duration,
+                                  bool allow_unstable) {
+  const std::string title = analysis + "step: ";
+  AutomaticStep step;
+  step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
+  const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
+  integrate::StepPlan& plan = step.plan;
+  plan.controller = controller_of(description.controller);
+  plan.locate_events = description.locate_events;
+  plan.rebuild = description.rebuild;
+  plan_step_range(title, description, parameters, duration,
+                  largest_step(title, description, method, system, parameters, duration, allow_unstable), plan);
   step.estimator = estimator_of(description, method, step.tolerance, reference, system);
   try {
     const auto stepper = integrate::make_stepper(method, system);

@@ -5,6 +5,7 @@
 #include <rubato/results/sink.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,17 @@ struct AutomaticStep {
   double tolerance = 1e-3;
   double expected_steps = 0.0;  ///< at least: what the largest step takes; for the size of files
 };
+
+/// A value that must be positive where it is given. Throws InvalidInput at its place.
+double positive_or(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
+                   const numerics::Parameters& parameters);
+
+/// Sets first, smallest (1e-12 of the duration) and largest step of a plan whose controller is known. Throws
+/// InvalidInput where they contradict each other, or the controller `fixed` lacks the step that it keeps.
+/// @param title  heads the messages: "analysis \"run\": step: "   @param largest  [s]
+void plan_step_range(const std::string& title, const model::StepDescription& description,
+                     const numerics::Parameters& parameters, double duration, double largest,
+                     integrate::StepPlan& plan);
 
 /// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator
 /// `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the

@@ -15,14 +15,6 @@ namespace {
 
 Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
 
-double positive(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
-                const numerics::Parameters& parameters) {
-  if (!quantity) return otherwise;
-  const double value = model::evaluate(*quantity, parameters, what);
-  if (!(value > 0.0)) throw InvalidInput(quantity->where, fmt::format("{} must be positive, got {}", what, value));
-  return value;
-}
-
 std::string row_names(const std::vector<Index>& rows, const system::Mechanism& mechanism) {
   std::vector<std::string> names;
   for (const Index row : rows) names.push_back(fmt::format("\"{}\"", mechanism.rows()[static_cast<std::size_t>(row)]));
@@ -126,28 +118,16 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
                              const system::State& start, const numerics::Parameters& parameters, double duration) {
   AutomaticStep step;
   step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
-  const double reference = positive(description.reference, 0.0, title + "reference", parameters);
+  const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
   integrate::StepPlan& plan = step.plan;
   const bool is_paper = description.controller == "cardona_cassano";
   if (is_paper) plan.controller = integrate::CardonaCassano{};
   if (description.controller == "fixed") plan.controller = integrate::FixedStep{};
   plan.locate_events = true;
   plan.rebuild = description.rebuild;
-  plan.smallest = positive(description.smallest, 1e-12 * duration, title + "smallest", parameters);
-  plan.largest = std::min(duration, positive(description.largest, std::min(duration / 50.0, period_limit(mechanism)),
-                                             title + "largest", parameters));
-  plan.first = positive(description.first, 0.0, title + "first", parameters);
-  if (!(plan.smallest <= plan.largest))
-    throw InvalidInput(
-        description.smallest ? description.smallest->where : description.where,
-        fmt::format("{}the smallest step {} s is beyond the largest, {} s", title, plan.smallest, plan.largest));
-  if (plan.first > 0.0 && !(plan.first >= plan.smallest && plan.first <= plan.largest))
-    throw InvalidInput(description.first->where,
-                       fmt::format("{}the first step {} s lies outside the range from {} s to {} s", title, plan.first,
-                                   plan.smallest, plan.largest));
-  if (description.controller == "fixed" && !description.first)
-    throw InvalidInput(description.where,
-                       title + "the controller fixed keeps the first step; give it, first = ... [s]");
+  const double largest = std::min(duration / 50.0, period_limit(mechanism));
+  plan_step_range(title, description, parameters, duration,
+                  std::min(duration, positive_or(description.largest, largest, title + "largest", parameters)), plan);
   const bool is_jump = description.estimator == "inertia_jump" || (description.estimator.empty() && is_paper);
   if (description.reference_is_initial)
     throw InvalidInput(description.where, title +
@@ -196,7 +176,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   } catch (const InvalidInput& fault) {
     throw InvalidInput(place(description.method.where, where), title + fault.message());
   }
-  transient.duration = positive(description.duration, 0.0, title + "duration", parameters);
+  transient.duration = positive_or(description.duration, 0.0, title + "duration", parameters);
   transient.energy = description.energy;
   if (description.initial)
     throw InvalidInput(where, title +
@@ -208,7 +188,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                                          transient.start, parameters, transient.duration);
   } else {
     if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
-    const double step = positive(description.step, 0.0, title + "step", parameters);
+    const double step = positive_or(description.step, 0.0, title + "step", parameters);
     if (step > transient.duration)
       throw InvalidInput(
           place(description.step->where, where),
