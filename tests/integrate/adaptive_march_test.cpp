@@ -267,6 +267,7 @@ TEST_P(SplitSteps, LowerEveryErrorWithSecondOrder) {
   Lengths lengths;
   StepPlan plan;
   plan.controller = CardonaCassano{};
+  plan.first = 0.02;
   (void)run(model.system, method, InertiaJump{3e-3, 0.0, false}, plan, model.end, nullptr, &lengths);
   ASSERT_GT(lengths.steps.size(), 50u);
   ASSERT_GT(*std::max_element(lengths.steps.begin(), lengths.steps.end()),
@@ -315,6 +316,37 @@ TEST(TableLoad, IsNeverSteppedOverAndItsJumpsRestartTheMarch) {
   EXPECT_EQ(std::count(observer.times.begin(), observer.times.end(), 1.5), 1);
   EXPECT_LT(errors.relative(), 1e-3);
   EXPECT_GT(errors.relative(), 1e-5);
+}
+
+// Between rows at equal distances the steps are equal parts, of few lengths, and the matrices of a length that comes
+// again are at hand: without either almost every change would cost a factorisation.
+TEST(TableLoad, OfManyRowsNeedsFewFactorisations) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = SparseMatrix(1, 1);
+  model::TableLaw rows;
+  for (int i = 0; i <= 600; ++i) {
+    rows.times.push_back(0.1 * i);
+    rows.values.push_back(std::sin(0.4 * i) + 0.3 * std::sin(1.1 * i));
+  }
+  parts.loads = system::Loads({{{0}, {1.0}, rows}});
+  parts.coordinates = {"x"};
+  const system::LocallyNonlinear system(std::move(parts));
+  struct Changes final : Observer {
+    bool accepted(const system::State& before, const system::State& after) override {
+      const double step = after.t - before.t;
+      count += std::abs(step - last) > 1e-9 * step;
+      last = step;
+      return true;
+    }
+    double last = 0.0;
+    long count = 0;
+  } changes;
+  const Marched marched = run(system, make_method("generalized_alpha"), LocalError{1e-2}, {}, 60.0, &changes);
+  ASSERT_EQ(marched.report.march.end, MarchEnd::reached);
+  EXPECT_GT(marched.report.march.steps, 1200);
+  EXPECT_LT(marched.report.factorisations, changes.count / 3);
+  EXPECT_GT(changes.count, 80);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <rubato/integrate/structure_timeline.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -9,7 +10,7 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr double same_step = 1e-9;       // relative: differences of times are not steps to the last bit
+constexpr double same_step = 1e-9;       // relative
 constexpr double least_progress = 1e-6;  // of the wanted step, between a step's start and a transition to locate in it
 constexpr int most_event_tries = 60;     // bisection alone resolves 1e-12 of the march with 40
 
@@ -70,14 +71,41 @@ class Marcher {
   Length next_length() const {
     const double next = breakpoints_[next_breakpoint_], rest = next - base_.t;
     double step = std::min(wanted_, plan_.largest);
-    const bool arrives = step >= rest * (1.0 - same_step);
-    if (arrives)
-      step = rest;
-    else if (next_breakpoint_ + 1 < breakpoints_.size())
-      step = rest / std::ceil(rest / step - same_step);
-    if (std::abs(step - base_step_) <= same_step * base_step_) step = base_step_;
+    const auto reaches_it = [&] { return step >= rest * (1.0 - same_step); };
+    if (!reaches_it() && next_breakpoint_ + 1 < breakpoints_.size()) step = part_of(rest, step);
+    const bool arrives = reaches_it();
+    if (arrives) step = rest;
+    step = known(step);
     if (arrives) return {step, next, 0.0, true};
     return length_of(step);
+  }
+
+  /// Equal parts of the way to a breakpoint. Near to it the parts stay what they are, or are divided or joined: rows at
+  /// equal distances are then passed with few different lengths, whose matrices the stepper has.
+  double part_of(double rest, double wanted) const {
+    constexpr double near = 32.0, worth_keeping = 0.8;
+    const double parts = part_ > 0.0 ? rest / part_ : HUGE_VAL;
+    if (!(parts < near && std::abs(parts - std::round(parts)) < same_step * parts))
+      return rest / std::ceil(rest / wanted - same_step);
+    if (wanted < worth_keeping * part_) return part_ / std::ceil(part_ / wanted - same_step);
+    const long all = std::lround(parts);
+    for (long joined = std::lround(std::floor(wanted / part_)); joined > 1; --joined)
+      if (all % joined == 0) return static_cast<double>(joined) * part_;
+    return part_;
+  }
+
+  /// A length to the last bit as it was before: differences of times are not, and the stepper remembers lengths.
+  double known(double step) const {
+    for (const double length : lengths_)
+      if (std::abs(step - length) <= same_step * length) return length;
+    return step;
+  }
+
+  void remember(double step) {
+    auto place = std::find(lengths_.begin(), lengths_.end(), step);
+    if (place == lengths_.end()) --place;
+    std::rotate(lengths_.begin(), place, place + 1);
+    lengths_.front() = step;
   }
 
   /// Millions of equal steps round the same way: the sum of times is compensated (Kahan 1965).
@@ -173,6 +201,8 @@ class Marcher {
     history_ = {error, length.step, false, history_.forgone};
     estimator_.accept(to_);
     base_step_ = length.step;
+    part_ = base_step_;
+    remember(base_step_);
     lost_ = length.lost;
     ++report_.march.steps;
     report_.smallest_step = std::min(report_.smallest_step, length.step);
@@ -188,6 +218,7 @@ class Marcher {
   /// A kink of the loads ends what differences know; a jump starts the march anew.
   void pass_breakpoint() {
     ++next_breakpoint_;
+    part_ = 0.0;
     if (!timeline_.jumps_at(base_.t)) return estimator_.forget();
     timeline_.restart(base_);
     start_anew();
@@ -239,6 +270,8 @@ class Marcher {
   std::vector<double> breakpoints_;  // and the end
   std::size_t next_breakpoint_ = 0;
   double wanted_ = 0.0, base_step_ = 0.0, lost_ = 0.0;
+  double part_ = 0.0;                 // the last step since the last breakpoint
+  std::array<double, 16> lengths_{};  // of the last steps, the last first
   ControlHistory history_;
   bool goes_on_ = true;
   AdaptiveReport report_;

@@ -17,10 +17,10 @@ void ErrorScales::start(const system::State& state) {
 
 void ErrorScales::expect(const system::State& state) {
   const ResponseScales scales = space_.scales(state, state.auxiliary_acceleration, duration_);
-  const double omega = scales.frequency;
-  size_ = std::max({size_, scales.size, space_.least_size()});
-  third_at_start_ = omega * omega * omega * scales.size;
-  y_ = std::pow(std::pow(omega, derivative_) * scales.size, 2);
+  const double omega = scales.frequency_of(derivative_);
+  size_ = std::max({size_, scales.size(), space_.least_size()});
+  third_at_start_ = scales.derivative(3);
+  y_ = std::pow(scales.derivative(derivative_), 2);
   rate_ = omega * omega * y_;
 }
 
@@ -38,9 +38,9 @@ double ErrorScales::relative(double dq_squared, double dv_squared, const system:
   double size = size_, omega = frequency();
   if (!(size > 0.0 && y_ > 0.0)) {  // at rest until now: by what it is about to do
     const ResponseScales scales = space_.scales(to, to.auxiliary_acceleration, duration_);
-    if (scales.size == 0.0) return 0.0;
-    size = std::max(size, scales.size);
-    omega = scales.frequency;
+    if (scales.size() == 0.0) return 0.0;
+    size = std::max(size, scales.size());
+    omega = scales.frequency_of(derivative_);
   }
   return std::sqrt(dq_squared + dv_squared / (omega * omega)) / size;
 }

@@ -62,10 +62,17 @@ struct InertiaJump {
 ///   c = d^2/2 + gamma d + gamma/2 + kappa - 1/6,   kappa = -d (1 - alpha_m - alpha_f)/2
 ///   e = sqrt(|dq|_M^2 + |dv|_M^2/omega^2) T / (h s)
 ///
-/// with q''' and q'''' from differences of the auxiliary acceleration, the frequency omega = |q''''|/|q'''| averaged
-/// over about a period, the size s of the response (the largest |q|_M so far, or what its acceleration promises), and T
-/// the time over which errors add up, (1 - exp(-r t_end))/r with r = J^T C J/(2 J^T M J) the damping of what makes
-/// them. TOL is the global error relative to s, on linear problems within a factor of ten.
+/// with q''' and q'''' from differences of the auxiliary acceleration, the size s of the response (the largest |q|_M so
+/// far, or what its acceleration promises), the frequency omega = |q''''|/|q'''| averaged over about a period, and T
+/// the time over which errors add up, (1 - exp(-r t_end))/r with r = x^T C x/(2 x^T M x) the damping of what makes
+/// them.
+///
+/// These are errors of the phase of a motion. What is faster than omega_c = (2/(C h^2 T))^(1/3), with C h^2 omega^3 the
+/// phase lost in a second, is out of phase before the end, and then errs by twice its amplitude 2 |q'''|/omega^3
+/// however long it lasts. So methods of second order count the part x of q''' that is slower than omega_c (SlowPart),
+/// and the whole of q''' for the step alone (1 for T/h), which sees an event before it has lasted.
+///
+/// TOL is the global error relative to s, on linear problems within a factor of ten.
 struct LocalError {
   double tolerance = 1e-3;
 };

@@ -33,7 +33,7 @@ class InertiaJumpEstimator final : public Estimator {
   void start(const system::State& state) override {
     const ResponseScales scales = space_->scales(state, state.auxiliary_acceleration, 1.0);
     // da = omega |a| h, or omega^2 |v| h where the start has no acceleration: half the tolerance.
-    const double rate = scales.frequency * scales.frequency * scales.frequency * scales.size;
+    const double rate = scales.derivative(3);
     first_ = rate > 0.0 ? std::cbrt(0.5 / (scale_ * rate)) : std::numeric_limits<double>::infinity();
   }
   double error(const system::State& from, const system::State& to, double h) override {

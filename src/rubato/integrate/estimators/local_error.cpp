@@ -1,6 +1,7 @@
 #include <rubato/integrate/estimators/error_constants.hpp>
 #include <rubato/integrate/estimators/error_scales.hpp>
 #include <rubato/integrate/estimators/estimators.hpp>
+#include <rubato/integrate/estimators/slow_part.hpp>
 
 #include <cmath>
 #include <limits>
@@ -18,11 +19,13 @@ class LocalErrorEstimator final : public Estimator {
         c_(constants),
         space_(std::move(space)),
         scales_(*space_, duration, 3),
+        slow_(space_->size()),
         now_(space_->size()),
         last_(space_->size()) {}
 
   void start(const system::State& state) override {
     scales_.start(state);
+    slow_.forget();
     forget();
   }
 
@@ -33,6 +36,36 @@ class LocalErrorEstimator final : public Estimator {
     now_.squared = now_.jump.dot(now_.product);
     now_.third = now_.squared / (h * h);
     now_.fourth = -1.0;
+    const double once = of_the_step(to, h), often = scales_.memory() / h;
+    if (c_.order == 1) return once * often;
+    return std::fmin(once * often, std::fmax(once, of_what_lasts(to, h) * often));
+  }
+
+  void accept(const system::State& to) override {
+    if (c_.order == 1) {
+      scales_.accept(now_.jump, now_.squared, now_.third, now_.fourth, to, now_.step);
+    } else {
+      scales_.accept(slow_.value(), now_.third, now_.third, now_.fourth, to, now_.step);
+      slow_.accept();
+    }
+    std::swap(now_, last_);
+    if (known_ < 2) ++known_;
+  }
+
+  void forget() override { known_ = 0; }
+  int exponent() const override { return c_.order; }
+
+  double first_step() const override {
+    const double third = scales_.third_derivative(), omega = scales_.frequency();
+    if (!(third > 0.0)) return std::numeric_limits<double>::infinity();
+    const double accepted = 0.5 * tolerance_ * scales_.size() / scales_.memory();
+    if (c_.order == 1) return accepted * omega / (std::abs(c_.velocity) * third);
+    return std::sqrt(accepted / (std::hypot(c_.displacement, c_.velocity_next) * third));
+  }
+
+ private:
+  /// Of all of q'''.
+  double of_the_step(const system::State& to, double h) {
     double dq_squared = now_.squared, dv_squared;
     if (known_ >= 2) {
       // q'''' = (J/h - J_last/h_last) over the distance of the two middles.
@@ -52,27 +85,25 @@ class LocalErrorEstimator final : public Estimator {
       dv_squared = dv * dv * dq_squared;
     }
     const double dq = c_.displacement * h * h;
-    return scales_.relative(dq * dq * dq_squared, dv_squared, to) * scales_.memory() / (h * tolerance_);
+    return scales_.relative(dq * dq * dq_squared, dv_squared, to) / tolerance_;
   }
 
-  void accept(const system::State& to) override {
-    scales_.accept(now_.jump, now_.squared, now_.third, now_.fourth, to, now_.step);
-    std::swap(now_, last_);
-    if (known_ < 2) ++known_;
+  /// Of the slow part of q''', which is what the scales are told of.
+  double of_what_lasts(const system::State& to, double h) {
+    const double strength = std::hypot(c_.displacement, c_.velocity_next), h3 = h * h * h;
+    slow_.look(now_.jump, h, std::cbrt(2.0 / (strength * h * h * scales_.memory())));
+    now_.third = space_->squared(slow_.value());
+    double third = now_.third, fourth;
+    if (known_ >= 2) {
+      now_.fourth = fourth = space_->squared(slow_.rate());
+    } else {
+      third = std::fmax(third, scales_.mean_square());
+      fourth = third * std::pow(scales_.frequency(), 2);
+    }
+    const double dq = c_.displacement * h3, dv = c_.velocity_next * h3;
+    return scales_.relative(dq * dq * third, dv * dv * fourth, to) / tolerance_;
   }
 
-  void forget() override { known_ = 0; }
-  int exponent() const override { return c_.order; }
-
-  double first_step() const override {
-    const double third = scales_.third_derivative(), omega = scales_.frequency();
-    if (!(third > 0.0)) return std::numeric_limits<double>::infinity();
-    const double accepted = 0.5 * tolerance_ * scales_.size() / scales_.memory();
-    if (c_.order == 1) return accepted * omega / (std::abs(c_.velocity) * third);
-    return std::sqrt(accepted / (std::hypot(c_.displacement, c_.velocity_next) * third));
-  }
-
- private:
   struct Difference {
     explicit Difference(Index n) : jump(n), product(n) {}
     Vector jump, product;  // J and M J
@@ -83,6 +114,7 @@ class LocalErrorEstimator final : public Estimator {
   ErrorConstants c_;
   std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;
+  SlowPart slow_;
   Difference now_, last_;
   int known_ = 0;  // accepted steps since the start or the last kink, up to two
 };

@@ -5,32 +5,37 @@
 #include <cmath>
 
 namespace rubato::integrate {
+namespace {
+
+double raised(const ResponseScales::Shape& shape, int order) {
+  return shape.length > 0.0 ? shape.length * std::pow(shape.frequency, order) : 0.0;
+}
+
+}  // namespace
+
+double ResponseScales::size() const {
+  return std::max({displacement.length, raised(velocity, -1), raised(acceleration, -2)});
+}
+
+double ResponseScales::derivative(int k) const {
+  return std::max(raised(velocity, k - 1), raised(acceleration, k - 2));
+}
+
+double ResponseScales::frequency_of(int k) const {
+  return raised(velocity, k - 1) > raised(acceleration, k - 2) ? velocity.frequency : acceleration.frequency;
+}
 
 ResponseScales response_scales(const system::LocallyNonlinear& system, const system::State& state,
                                const Vector& acceleration, double duration) {
   MassNorm norm(system);
   const SparseMatrix stiffness = system.stuck_stiffness();
-  const double slowest = 1.0 / duration;
-  const auto frequency_of = [&](const Vector& shape, double length) {
-    const double quotient = shape.dot(stiffness * shape) / (length * length);
-    return std::max(slowest, std::sqrt(std::max(0.0, quotient)));
+  const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
+    const double length = norm(x);
+    if (!(length > 0.0)) return {};
+    const double quotient = x.dot(stiffness * x) / (length * length);
+    return {length, std::max(1.0 / duration, std::sqrt(std::max(0.0, quotient)))};
   };
-  ResponseScales scales;
-  scales.acceleration = norm(acceleration);
-  const double velocity = norm(state.v), displacement = norm(state.q);
-  scales.size = displacement;
-  if (displacement > 0.0) scales.frequency = frequency_of(state.q, displacement);
-  if (velocity > 0.0) {
-    const double omega = frequency_of(state.v, velocity);
-    scales.size = std::max(scales.size, velocity / omega);
-    scales.frequency = std::max(scales.frequency, omega);
-  }
-  if (scales.acceleration > 0.0) {
-    const double omega = frequency_of(acceleration, scales.acceleration);
-    scales.size = std::max(scales.size, scales.acceleration / (omega * omega));
-    scales.frequency = std::max(scales.frequency, omega);
-  }
-  return scales;
+  return {shape_of(state.q), shape_of(state.v), shape_of(acceleration)};
 }
 
 }  // namespace rubato::integrate

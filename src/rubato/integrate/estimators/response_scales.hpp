@@ -4,16 +4,22 @@
 
 namespace rubato::integrate {
 
-/// How large a response is about to be, and how fast, from one state.
+/// How large a response is about to be, and how fast, from one state. A shape of frequency omega (omega^2 = x^T K x /
+/// x^T M x, K with all sliders stuck) promises the displacement |a|/omega^2, |v|/omega or |q| in the mass norm; each
+/// counts with its own frequency, so that an acceleration of round-off makes no fast motion of a large displacement. A
+/// shape that nothing holds moves freely: its omega is that of a motion over the whole duration.
 struct ResponseScales {
-  double size = 0.0;          ///< displacement in the mass norm [m sqrt(kg)]; 0: at rest without load
-  double frequency = 0.0;     ///< [rad/s]; 0: at rest without load
-  double acceleration = 0.0;  ///< in the mass norm
+  struct Shape {
+    double length = 0.0;     ///< in the mass norm; 0: at rest, or without load
+    double frequency = 0.0;  ///< [rad/s]
+  };
+  Shape displacement, velocity, acceleration;
+
+  double size() const;               ///< of the displacement to expect [m sqrt(kg)]
+  double derivative(int k) const;    ///< |d^k q/dt^k|_M to expect, k = 1, 2 or 3
+  double frequency_of(int k) const;  ///< of what makes most of that derivative
 };
 
-/// The acceleration a promises the displacement |a|/omega^2 with the frequency of its own shape, omega^2 = a^T K a /
-/// a^T M a (K with all sliders stuck); a velocity likewise |v|/omega. A shape that nothing holds moves freely: its
-/// omega is that of a motion over the whole duration.
 ResponseScales response_scales(const system::LocallyNonlinear& system, const system::State& state,
                                const Vector& acceleration, double duration);
 

@@ -28,16 +28,12 @@ class MechanismSpace final : public ErrorSpace {
   }
 
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
-    ResponseScales result;
-    result.acceleration = norm(acceleration);
-    for (const Vector* shape : {&state.v, &acceleration}) {
-      const double length = norm(*shape);
-      if (!(length > 0.0)) continue;
-      const double omega = std::max(1.0 / duration, frequency(state, *shape, length));
-      result.frequency = std::max(result.frequency, omega);
-      result.size = std::max(result.size, shape == &state.v ? length / omega : length / (omega * omega));
-    }
-    return result;
+    const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
+      const double length = norm(x);
+      return length > 0.0 ? ResponseScales::Shape{length, std::max(1.0 / duration, frequency(state, x, length))}
+                          : ResponseScales::Shape{};
+    };
+    return {{}, shape_of(state.v), shape_of(acceleration)};
   }
 
   // Dampers of joints change with the configuration: errors are not taken to be forgotten.

@@ -30,7 +30,10 @@ class AlphaStep {
   virtual StepReport solve(const system::State& from, const double* load, system::State& to) = 0;
 };
 
-/// Dense with the size known at compile time (up to eight coordinates), dense (up to 64), sparse beyond.
+/// Coordinates up to which matrices are full: beyond, a chain is faster sparse and a full matrix not much slower.
+inline constexpr Index largest_dense_size = 64;
+
+/// Dense with the size known at compile time (up to eight coordinates), dense, or sparse.
 std::unique_ptr<AlphaStep> make_alpha_step(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system);
 
 std::unique_ptr<AlphaStep> make_dense_alpha_step(const GeneralizedAlpha& parameters,

@@ -319,9 +319,8 @@ std::unique_ptr<AlphaStep> make_sparse_alpha_step(const GeneralizedAlpha& parame
 }
 
 std::unique_ptr<AlphaStep> make_alpha_step(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system) {
-  constexpr Index dense_size = 64;  // beyond, a chain is faster sparse and a full matrix not much slower
-  return system.size() <= dense_size ? make_dense_alpha_step(parameters, system)
-                                     : make_sparse_alpha_step(parameters, system);
+  return system.size() <= largest_dense_size ? make_dense_alpha_step(parameters, system)
+                                             : make_sparse_alpha_step(parameters, system);
 }
 
 }  // namespace rubato::integrate

@@ -9,26 +9,43 @@
 namespace rubato::integrate {
 namespace {
 
-/// Keeps the matrices of a step while the step stays the same.
-class PreparedStep {
+/// Keeps the matrices of the last steps of different lengths. Where loads have rows at equal distances, or modes beat,
+/// few lengths come again and again: on a building of 41 coordinates under its record sixteen of them save nine
+/// factorisations in ten. Sparse factors are too large to keep more than one.
+class PreparedSteps {
  public:
-  PreparedStep(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
-      : step_(make_alpha_step(parameters, system)) {}
+  PreparedSteps(const GeneralizedAlpha& parameters, const system::LocallyNonlinear& system)
+      : parameters_(parameters), system_(system), most_(system.size() <= largest_dense_size ? 16 : 1) {}
 
   bool prepare(double h) {
-    if (h == h_) return true;
-    h_ = std::nan("");
+    const auto found = std::find_if(kept_.begin(), kept_.end(), [h](const Kept& kept) { return kept.h == h; });
+    if (found != kept_.end()) {
+      std::rotate(kept_.begin(), found, found + 1);
+      return true;
+    }
+    if (kept_.size() < most_) kept_.push_back({std::nan(""), make_alpha_step(parameters_, system_)});
+    std::rotate(kept_.begin(), kept_.end() - 1, kept_.end());
+    Kept& now = kept_.front();
+    now.h = std::nan("");
     ++factorisations_;
-    if (!step_->prepare(h)) return false;
-    h_ = h;
+    if (!now.step->prepare(h)) return false;
+    now.h = h;
     return true;
   }
-  AlphaStep* operator->() { return step_.get(); }
+  /// The step prepared last.
+  AlphaStep* operator->() { return kept_.front().step.get(); }
   int factorisations() const { return factorisations_; }
 
  private:
-  std::unique_ptr<AlphaStep> step_;
-  double h_ = std::nan("");
+  struct Kept {
+    double h;
+    std::unique_ptr<AlphaStep> step;
+  };
+
+  GeneralizedAlpha parameters_;
+  const system::LocallyNonlinear& system_;
+  std::size_t most_;
+  std::vector<Kept> kept_;  // used last first
   int factorisations_ = 0;
 };
 
@@ -71,7 +88,7 @@ class AlphaStepper final : public Stepper {
  private:
   GeneralizedAlpha p_;
   const system::LocallyNonlinear& system_;
-  PreparedStep step_;
+  PreparedSteps step_;
   LoadValues loads_;
   std::vector<double> load_;
   std::optional<system::EquilibriumAcceleration> equilibrium_;
@@ -120,7 +137,7 @@ class WilsonStepper final : public Stepper {
  private:
   double theta_;
   const system::LocallyNonlinear& system_;
-  PreparedStep step_;
+  PreparedSteps step_;
   LoadValues loads_;
   std::vector<double> load_;
   system::State beyond_;
