@@ -4,6 +4,8 @@
 
 #include "measure.hpp"
 #include "support/exact_errors.hpp"
+#include "support/free_vibration.hpp"
+#include "support/stop_flow.hpp"
 #include "work_problems.hpp"
 
 #include <fmt/core.h>
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -44,11 +47,9 @@ class Bench {
   /// One CSV row for each number of the ladder, while the errors are above `least`.
   void run(const Route& route, double least) {
     for (double number = route.first; number > route.last * 0.99; number *= route.ratio) {
-      testing::ExactErrors errors(problem_.system, problem_.start);
-      const Counts counts = march(route, number, &errors);
+      Counts counts;
+      const double error = error_of(route, number, counts);
       if (!counts.reached) continue;
-      errors.finish();
-      const double error = errors.relative();
       const double cpu = cpu_of([&] { (void)march(route, number, nullptr); });
       fmt::print("{},{},{},{},{:.6g},{:.6e},{},{},{},{},{:.2f},{:.6e}\n", problem_.name,
                  static_cast<int>(problem_.kind), problem_.is_linear ? 1 : 0, route.name, number, error, counts.steps,
@@ -59,6 +60,20 @@ class Bench {
   }
 
  private:
+  double error_of(const Route& route, double number, Counts& counts) {
+    if (problem_.system.stop_count() > 0) {
+      if (!stop_) stop_.emplace(problem_.system, problem_.start, problem_.duration);
+      const auto truth = [this](double t) { return stop_->at(t); };
+      testing::LargestError<decltype(truth)> errors(problem_.system, truth);
+      counts = march(route, number, &errors);
+      return errors.relative();
+    }
+    testing::ExactErrors errors(problem_.system, problem_.start);
+    counts = march(route, number, &errors);
+    errors.finish();
+    return errors.relative();
+  }
+
   Counts march(const Route& route, double number, integrate::Observer* observer) const {
     const std::string name = route.name;
     const auto stepper = integrate::make_stepper(method_, problem_.system);
@@ -73,6 +88,8 @@ class Bench {
     integrate::EstimatorKind kind = integrate::LocalError{number};
     plan.largest = problem_.duration / 50.0;
     plan.smallest = 1e-12 * problem_.duration;
+    plan.locate_events = problem_.system.stop_count() > 0;  // the default of a study
+    plan.locate_sliders = false;
     if (name == "cardona_cassano") {
       plan.controller = integrate::CardonaCassano{};
       kind = integrate::InertiaJump{number, reference_value(), false};
@@ -122,6 +139,7 @@ class Bench {
   }
 
   const WorkProblem& problem_;
+  std::optional<testing::StopFlow> stop_;
   integrate::Method method_;
   double factorisation_ = 0.0;
 };

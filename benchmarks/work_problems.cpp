@@ -78,6 +78,7 @@ std::vector<WorkProblem> work_problems(const std::filesystem::path& examples) {
   all.push_back(
       from_rest("under-platform damper", Kind::friction, false, assembled(study("underplatform-damper")), 60.0));
   all.push_back(from_equilibrium("building", Kind::friction, false, assembled(building), 0, 20.0));
+  all.push_back(from_rest("frame with a late stop", Kind::rare_event, false, assembled(study("late-stop")), 2.0));
   all.push_back(
       from_equilibrium("building under a blast", Kind::rare_event, false, assembled(blasted(building)), 0, 30.0));
   return all;

@@ -103,7 +103,8 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
   integrate::StepPlan& plan = step.plan;
   plan.controller = controller_of(description.controller);
-  plan.locate_events = description.locate_events;
+  plan.locate_events = description.locate_events.value_or(system.stop_count() > 0);
+  plan.locate_sliders = description.locate_events.has_value();
   plan.rebuild = description.rebuild;
   plan_step_range(title, description, parameters, duration,
                   largest_step(title, description, method, system, parameters, duration, allow_unstable), plan);

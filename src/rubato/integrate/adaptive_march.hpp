@@ -14,6 +14,7 @@ struct StepPlan {
   double smallest = 0.0;       ///< a controller that asks for less ends the march [s]
   double largest = HUGE_VAL;   ///< [s]
   bool locate_events = false;  ///< steps end at transitions of the timeline
+  bool locate_sliders = true;  ///< those of the sliders of a structure among them, else those of its stops alone
   bool rebuild = true;  ///< the auxiliary acceleration when the step changes; the paper of Cardona and Cassano does not
 };
 

@@ -44,9 +44,10 @@ double size_of(const system::LocallyNonlinear::Ends& ends, const Vector& q) {
 
 }  // namespace
 
-StructureTimeline::StructureTimeline(const system::LocallyNonlinear& system, double resolution)
+StructureTimeline::StructureTimeline(const system::LocallyNonlinear& system, double resolution, bool watches_sliders)
     : system_(system),
       resolution_(resolution),
+      watches_sliders_(watches_sliders),
       loads_(system.loads()),
       left_(system.size()),
       right_(system.size()),
@@ -113,7 +114,8 @@ StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::
 }
 
 StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system::State& from) const {
-  return contact < system_.slider_count() ? watch_of_slider(contact, from) : watch_of_stop(contact, from);
+  if (contact >= system_.slider_count()) return watch_of_stop(contact, from);
+  return watches_sliders_ ? watch_of_slider(contact, from) : Watch::nothing;
 }
 
 StructureTimeline::Watch StructureTimeline::watch_of_slider(Index i, const system::State& from) const {

@@ -17,7 +17,8 @@ namespace rubato::integrate {
 class StructureTimeline final : public Timeline {
  public:
   /// @param resolution  [s]: at rest is who would be so within this time
-  StructureTimeline(const system::LocallyNonlinear& system, double resolution);
+  /// @param watches_sliders  else stops alone
+  StructureTimeline(const system::LocallyNonlinear& system, double resolution, bool watches_sliders = true);
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
@@ -41,6 +42,7 @@ class StructureTimeline final : public Timeline {
 
   const system::LocallyNonlinear& system_;
   double resolution_;
+  bool watches_sliders_;
   system::Loads loads_;
   Vector left_, right_;
   system::State beyond_;

@@ -12,7 +12,7 @@ model::StepDescription read_step(const TomlReader& analysis, const toml::table& 
   step.first = reader.optional_quantity("first");
   step.smallest = reader.optional_quantity("smallest");
   step.largest = reader.optional_quantity("largest");
-  step.locate_events = reader.optional_word("events", {"locate", "pass"}).value_or("pass") == "locate";
+  if (const auto events = reader.optional_word("events", {"locate", "pass"})) step.locate_events = *events == "locate";
   if (const toml::node* reference = reader.node("reference")) {
     const auto* word = reference->as_string();
     if (word && word->get() == "initial")

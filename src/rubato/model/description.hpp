@@ -224,11 +224,11 @@ struct StepDescription {
   std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
   std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
   std::optional<Quantity> first, smallest, largest;  ///< [s]
-  bool locate_events = false;                        ///< end steps where sliders and stops change their state
-  std::optional<Quantity> reference;                 ///< l of inertia_jump [m sqrt(kg)]
-  bool reference_is_initial = false;                 ///< l = |q0|_M even where the model has a value of its own
-  bool as_printed = false;                           ///< inertia_jump with the misprint of its source
-  bool rebuild = true;                               ///< the auxiliary acceleration when the step changes
+  std::optional<bool> locate_events;  ///< end steps where contacts change their state; only stops unless given
+  std::optional<Quantity> reference;  ///< l of inertia_jump [m sqrt(kg)]
+  bool reference_is_initial = false;  ///< l = |q0|_M even where the model has a value of its own
+  bool as_printed = false;            ///< inertia_jump with the misprint of its source
+  bool rebuild = true;                ///< the auxiliary acceleration when the step changes
   Location where;
 };
 

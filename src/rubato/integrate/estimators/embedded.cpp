@@ -21,7 +21,7 @@ class EmbeddedEstimator : public Estimator {
   ///               alone passes through zero, and a step that grows there is rejected soon after; infinity: no peaks
   EmbeddedEstimator(double tolerance, double decay, const system::LocallyNonlinear& system, double duration)
       : tolerance_(tolerance),
-        space_(make_error_space(system)),
+        space_(make_error_space(system, duration)),
         scales_(*space_, duration, 1),
         decay_(decay),
         dq_(system.size()),

@@ -1,4 +1,5 @@
 #include <rubato/integrate/estimators/error_space.hpp>
+#include <rubato/integrate/estimators/load_scale.hpp>
 #include <rubato/integrate/estimators/mass_norm.hpp>
 
 namespace rubato::integrate {
@@ -6,14 +7,21 @@ namespace {
 
 class StructureSpace final : public ErrorSpace {
  public:
-  explicit StructureSpace(const system::LocallyNonlinear& system)
-      : system_(system), norm_(system), product_(system.size()) {}
+  StructureSpace(const system::LocallyNonlinear& system, double duration)
+      : system_(system), norm_(system), duration_(duration), product_(system.size()) {}
 
   Index size() const override { return system_.size(); }
   const Vector& times_mass(const Vector& x) override { return norm_.times(x); }
   double displacement(const system::State& state) override { return norm_(state.q); }
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
     return response_scales(system_, state, acceleration, duration);
+  }
+  /// Of what the loads promise a tenth: a promise may be ten times too large, as that of a record far above resonance,
+  /// and without it a response that grows from nothing would be measured by nothing.
+  double least_size() override {
+    constexpr double share = 0.1;
+    if (least_size_ < 0.0) least_size_ = share * size_under_loads(system_, duration_);
+    return least_size_;
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
   double damping(const Vector& x) override {
@@ -24,13 +32,14 @@ class StructureSpace final : public ErrorSpace {
  private:
   const system::LocallyNonlinear& system_;
   MassNorm norm_;
+  double duration_, least_size_ = -1.0;
   Vector product_;
 };
 
 }  // namespace
 
-std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system) {
-  return std::make_unique<StructureSpace>(system);
+std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration) {
+  return std::make_unique<StructureSpace>(system, duration);
 }
 
 }  // namespace rubato::integrate

@@ -19,7 +19,7 @@ class ErrorSpace {
   /// Size of the displacements of a state in the mass norm [m sqrt(kg)]; 0 where they mean nothing.
   virtual double displacement(const system::State& state) = 0;
   /// Size that errors are measured by even where nothing has moved yet [m sqrt(kg)].
-  virtual double least_size() const { return 0.0; }
+  virtual double least_size() { return 0.0; }
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
   virtual bool is_damped() const = 0;
   /// x^T C x
@@ -30,6 +30,7 @@ class ErrorSpace {
 };
 
 /// That of a structure; the system must outlive it.
-std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system);
+/// @param duration  of the march, whose loads promise a size [s]
+std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration);
 
 }  // namespace rubato::integrate

@@ -38,9 +38,9 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Metho
   const GeneralizedAlpha linear{0.0, 0.0, 1.0 / 6.0, 0.5};  // acceleration
   const auto* local = std::get_if<LocalError>(&kind);
   if (alpha || !local)
-    return make_estimator(kind, alpha ? *alpha : linear, make_error_space(system), system.start(), duration);
+    return make_estimator(kind, alpha ? *alpha : linear, make_error_space(system, duration), system.start(), duration);
   require_tolerance(local->tolerance, true);
-  return make_local_error(*local, error_constants(*wilson), make_error_space(system), duration);
+  return make_local_error(*local, error_constants(*wilson), make_error_space(system, duration), duration);
 }
 
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const GeneralizedAlpha& method,

@@ -63,9 +63,9 @@ struct InertiaJump {
 ///   e = sqrt(|dq|_M^2 + |dv|_M^2/omega^2) T / (h s)
 ///
 /// with q''' and q'''' from differences of the auxiliary acceleration, the size s of the response (the largest |q|_M so
-/// far, or what its acceleration promises), the frequency omega = |q''''|/|q'''| averaged over about a period, and T
-/// the time over which errors add up, (1 - exp(-r t_end))/r with r = x^T C x/(2 x^T M x) the damping of what makes
-/// them.
+/// far, what its acceleration promises, or a tenth of what the loads of the march do), the frequency omega =
+/// |q''''|/|q'''| averaged over about a period, and T the time over which errors add up, (1 - exp(-r t_end))/r with r =
+/// x^T C x/(2 x^T M x) the damping of what makes them.
 ///
 /// These are errors of the phase of a motion. What is faster than omega_c = (2/(C h^2 T))^(1/3), with C h^2 omega^3 the
 /// phase lost in a second, is out of phase before the end, and then errs by twice its amplitude 2 |q'''|/omega^3

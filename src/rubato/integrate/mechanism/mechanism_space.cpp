@@ -23,7 +23,7 @@ class MechanismSpace final : public ErrorSpace {
     return product_;
   }
   double displacement(const system::State&) override { return 0.0; }
-  double least_size() const override {
+  double least_size() override {
     return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
   }
 

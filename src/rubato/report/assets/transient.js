@@ -171,7 +171,8 @@ function write_transient(chapter, analysis) {
   const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
   const of = (names) => names.map((name) => variable_of(table, name))
     .filter((variable) => variable && variable.labels.length && !is_of_stops(variable));
-  const stops = table.variables.filter((variable) => is_of_stops(variable) && variable.labels.length);
+  const stops = table.variables.map((variable, index) => ({...variable, index}))
+    .filter((variable) => is_of_stops(variable) && variable.labels.length);
   const motion = of(["position", "velocity", "acceleration"]);
   const rotations = of(["angle", "angular_velocity", "angular_acceleration"]);
   const sliders = of(["force", "slip", "displacement"]), hinges = of(["moment", "slip_angle"]);

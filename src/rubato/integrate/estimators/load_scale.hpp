@@ -1,0 +1,18 @@
+#pragma once
+
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::integrate {
+
+/// How large a response the loads of a march promise, in the mass norm [m sqrt(kg)]; 0 without loads. Each load counts
+/// with its largest value at the displacement that it would hold on the structure with its sliders stuck, which inertia
+/// alone limits to what happens within the duration T:
+///
+///   q_j = (K + kT of the sliders + 2/T^2 M)^-1 w_j,   size^2 = sum of (max |law_j| |q_j|_M / max(1,
+///   (Omega/omega_j)^2))^2
+///
+/// with omega_j the frequency of the shape q_j, and Omega that of a harmonic law: a load above resonance meets inertia.
+/// @param duration  of the march from t = 0 [s]
+double size_under_loads(const system::LocallyNonlinear& system, double duration);
+
+}  // namespace rubato::integrate
