@@ -35,6 +35,8 @@ PICTURES = {
                      "responses": "response beside"},
     "building": {"motion": "Motion of the coordinates"},
     "frame": {"motion": "Motion of the coordinates"},
+    "heavy-top": {"motion": "Motion of the coordinates"},
+    "bricard": {"energy": "Energy ledger"},
     "matrices": {"motion": "Motion of the coordinates"},
 }
 WIDTH = 900
