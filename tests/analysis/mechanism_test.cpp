@@ -193,6 +193,34 @@ TEST(MechanismStudies, StartFromTheirStaticEquilibrium) {
   }
 }
 
+TEST(MechanismStudies, RefuseAVelocityBesideAStaticStart) {
+  const std::string text =
+      "[[body]]\nname = \"bob\"\nmass = 2.0\ninertia = 1.0\nposition = [0.0, -1.0]\nvelocity = [1.0, 0.0]\n[[joint]]\n"
+      "type = \"revolute\"\nbetween = [\"ground\", \"bob\"]\nat = [0.0, 0.0]\n[gravity]\nacceleration = [0.0, -10.0]\n"
+      "[[analysis]]\nname = \"m\"\ntype = \"transient\"\ninitial = \"static\"\nstep = 0.01\nduration = 1.0\n";
+  try {
+    run(text);
+    FAIL() << "started";
+  } catch (const InvalidInput& fault) {
+    EXPECT_NE(std::string(fault.what()).find("\"bob.x\" is given a velocity"), std::string::npos) << fault.what();
+  }
+}
+
+// A pendulum of 1 mm finds its equilibrium as one of 1 m does: the search knows no metre.
+TEST(MechanismStudies, FindTheEquilibriumOfSmallMechanisms) {
+  for (const auto& [place, length] : {std::pair{"0.6e-3, 0.0, 0.8e-3", 1e-3}, std::pair{"0.6, 0.0, 0.8", 1.0}}) {
+    const Ran ran = run(std::string("[[body]]\nname = \"bob\"\nshape = { kind = \"sphere\", radius = 1e-4, density = "
+                                    "8000.0 }\nposition = [") +
+                        place +
+                        "]\n[[joint]]\nname = \"J\"\ntype = \"revolute\"\nbetween = [\"ground\", \"bob\"]\nat = [0.0, "
+                        "0.0, 0.0]\naxis = [0.0, 1.0, 0.0]\n[gravity]\nacceleration = [0.0, 0.0, -9.81]\n[[analysis]]\n"
+                        "name = \"rest\"\ntype = \"static\"\n");
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    const auto& table = ran.sink.tables.at("rest");
+    EXPECT_NEAR(table.rows[0][table.column("position", "bob.z")], -length, 1e-8 * length);
+  }
+}
+
 TEST(MechanismStudies, SayWhatNothingResistsWhereThereIsNoEquilibrium) {
   const Ran ran =
       run("[[body]]\nname = \"stone\"\nmass = 2.0\ninertia = 1.0\nposition = [0.0, 0.0]\n[gravity]\n"

@@ -181,7 +181,13 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   transient.energy = description.energy;
   transient.start = assembled_start(where, mechanism, plan.warnings);
   if (description.initial) {
-    if (description.initial->displacements) refuse_displacements(title, *description.initial);
+    refuse_displacements(title, *description.initial);
+    Index fastest = 0;
+    if (mechanism.size() > 0 && mechanism.start().v.cwiseAbs().maxCoeff(&fastest) > 0.0)
+      throw InvalidInput(
+          where, fmt::format("{}initial = \"static\" starts at rest, and \"{}\" is given a velocity; remove one "
+                             "of them",
+                             title, mechanism.coordinates()[static_cast<std::size_t>(fastest)]));
     const MechanismStatic found = equilibrium_near(transient.start, mechanism);
     if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
       throw InvalidInput(where, title + complaint);

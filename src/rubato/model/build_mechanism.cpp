@@ -65,6 +65,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   Mechanism& mechanism = assembly.mechanism;
   if (!description.structure.is_empty()) take_structure(assembly);
   for (const BodyDescription& body : description.bodies) take_body(assembly, body);
+  assembly.start = mechanism.numbers();
   for (const JointDescription& joint : description.joints)
     (assembly.in_plane() ? take_plane_joint : take_space_joint)(assembly, joint);
   take_springs(assembly);

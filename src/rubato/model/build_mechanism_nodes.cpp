@@ -174,8 +174,7 @@ void take_structure(MechanismAssembly& assembly) {
 
 void take_springs(MechanismAssembly& assembly) {
   auto& elements = assembly.mechanism.elements;
-  const std::vector<double> q = assembly.mechanism.numbers();
-  const auto value = [&](const NodeNumber& n) { return n.q < 0 ? 0.0 : q[static_cast<std::size_t>(n.q)]; };
+  const auto value = [&](const NodeNumber& n) { return n.q < 0 ? 0.0 : assembly.start[static_cast<std::size_t>(n.q)]; };
   for (const SpringDescription& spring : assembly.description.springs) {
     const std::string part = fmt::format("the spring between \"{}\" and \"{}\"", spring.between[0], spring.between[1]);
     const auto [first, second] = ends_of(assembly, spring.between, spring.between_where, part);

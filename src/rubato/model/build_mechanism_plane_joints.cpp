@@ -52,7 +52,7 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
                      PlaneCoordinate s) {
   Mechanism& mechanism = assembly.mechanism;
   const double value = start_value(assembly, joint, part, s.is_angle());
-  s.zero = s.value(mechanism.numbers().data()) - value;
+  s.zero = s.value(assembly.start.data()) - value;
   mechanism.joint_coordinates.push_back({joint.name, s});
   AtLock drive;
   if (joint.lock) {

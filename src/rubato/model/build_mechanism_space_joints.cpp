@@ -78,9 +78,10 @@ DrawnLine::End draw(Mechanism& mechanism, const SpacePoint& point) {
   return end;
 }
 
-SpaceCoordinate angle_between(Mechanism& mechanism, const SpaceFrame& first, const SpaceFrame& second) {
+SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& first, const SpaceFrame& second) {
   const TurnAngle angle = turn_of(first, second);
-  const Index counter = mechanism.add_turn_counter({first.point, second.point, angle});
+  const Index counter = assembly.mechanism.add_turn_counter({first.point, second.point, angle});
+  assembly.start.push_back(0.0);
   return {SpaceCoordinate::Kind::angle, first.point, second.point, angle, counter, 0.0};
 }
 
@@ -93,9 +94,7 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
                      SpaceCoordinate s, bool has_laws) {
   Mechanism& mechanism = assembly.mechanism;
   const double value = has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
-  std::vector<double> q = mechanism.numbers();
-  q.resize(q.size() + mechanism.turn_counters.size(), 0.0);
-  s.zero = s.value(q.data()) - value;
+  s.zero = s.value(assembly.start.data()) - value;
   mechanism.space_coordinates.push_back({joint.name, s});
   if (has_laws) take_laws(assembly, joint, built.part, s, value);
 }
@@ -139,7 +138,7 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
   require_axes(assembly, joint, built);
   const bool has_no_axis = joint.type == Type::rigid || joint.type == Type::spherical || joint.type == Type::distance;
   Matrix3 axes = Matrix3::Identity();
-  const std::vector<double> q = assembly.mechanism.numbers();
+  const std::vector<double>& q = assembly.start;
   if (joint.type == Type::universal) {
     axes = axes_of_universal(assembly, joint, built.part);
   } else if (!has_no_axis) {
@@ -180,7 +179,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   const bool turns = joint.type == Type::revolute || joint.type == Type::cylindrical || joint.type == Type::screw;
   const bool slides = joint.type == Type::prismatic || joint.type == Type::cylindrical || joint.type == Type::screw;
   if (turns)
-    take_coordinate(assembly, joint, built, angle_between(mechanism, first, second), joint.type != Type::cylindrical);
+    take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical);
   if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic);
 }
 

@@ -20,6 +20,7 @@ struct MechanismAssembly {
   std::unordered_map<std::string, Index> nodes;  ///< and bodies
   std::unordered_set<std::string> fixed;         ///< "NODE.rx" held by supports
   std::vector<std::string> joint_names;
+  std::vector<double> start;  ///< all numbers of all nodes, once they are there, then of counters of turns
   Axis low = Axis::Constant(HUGE_VAL), high = Axis::Constant(-HUGE_VAL);  ///< the box around all places
   double mass = 0.0, inertia = 0.0;                                       ///< of the error measure
   std::size_t elements = 0;                                               ///< beams and links
