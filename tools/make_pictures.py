@@ -36,6 +36,8 @@ PICTURES = {
     "building": {"motion": "Motion of the coordinates"},
     "late-stop": {"motion": "Motion of the coordinates"},
     "frame": {"motion": "Motion of the coordinates"},
+    "heavy-top": {"motion": "Motion of the coordinates"},
+    "bricard": {"energy": "Energy ledger"},
     "matrices": {"motion": "Motion of the coordinates"},
 }
 WIDTH = 900

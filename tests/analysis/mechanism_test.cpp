@@ -1,54 +1,21 @@
-#include <rubato/analysis/run_study.hpp>
 #include <rubato/core/error.hpp>
-#include <rubato/io/read_study.hpp>
-#include <rubato/model/build_mechanism.hpp>
-#include <rubato/system/mechanism.hpp>
 
 #include <support/double_pendulum.hpp>
-#include <support/memory_sink.hpp>
+#include <support/run_mechanism.hpp>
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 namespace rubato {
 namespace {
 
-struct Ran {
-  testing::MemorySink sink;
-  analysis::RunReport report;
-};
+using Ran = testing::RanMechanism;
+using testing::example;
+using testing::replaced;
 
-Ran run(const std::string& text) {
-  const auto study = io::read_study_text(text, "study.toml");
-  const numerics::Parameters overrides, parameters = model::evaluate_parameters(study.parameters);
-  const system::Mechanism mechanism(model::build_mechanism(study.model, parameters));
-  const system::LocallyNonlinear empty({});
-  const analysis::StudyInput input{study, overrides, parameters, empty, &mechanism};
-  Ran ran;
-  testing::QuietProgress progress;
-  const std::atomic<bool> stop{false};
-  analysis::RunContext context{ran.sink, progress, stop};
-  ran.report = analysis::run_analysis(study.analyses.front(), input, context);
-  return ran;
-}
-
-std::string example(const std::string& name) {
-  std::ifstream file(std::string(RUBATO_EXAMPLES) + "/" + name + "/study.toml");
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string replaced(std::string text, const std::string& piece, const std::string& other) {
-  const std::size_t at = text.find(piece);
-  EXPECT_NE(at, std::string::npos) << piece;
-  return text.replace(at, piece.size(), other);
-}
+Ran run(const std::string& text) { return testing::run_mechanism_study(text); }
 
 TEST(MechanismStudies, RunTheDoublePendulumOfThePaper) {
   const Ran ran = run(example("double-pendulum"));
@@ -168,9 +135,98 @@ TEST(MechanismStudies, NameTheLawThatReturnsANumberThatIsNotFinite) {
 
 TEST(MechanismStudies, RefuseAnalysesOfStructures) {
   const std::string text = example("double-pendulum");
-  const std::string modes =
-      text.substr(0, text.find("[[analysis]]")) + "[[analysis]]\nname = \"m\"\ntype = \"modes\"\n";
-  EXPECT_THROW(run(modes), InvalidInput);
+  const std::string response = text.substr(0, text.find("[[analysis]]")) +
+                               "[[analysis]]\nname = \"m\"\ntype = \"frequency_response\"\nangular_frequency = [1.0]\n";
+  EXPECT_THROW(run(response), InvalidInput);
+}
+
+/// The double pendulum held level and to one side, with nothing but gravity.
+std::string level_pendulum() {
+  std::string text = example("double-pendulum");
+  text = replaced(text, "position = [0.0, -1.0]", "position = [0.6, -0.8]");
+  text = replaced(text, "position = [0.0, -2.0]", "position = [1.6, -0.8]");
+  return text.substr(0, text.find("[[force]]"));
+}
+
+// The double pendulum of two masses at rest: links of 1 m hang down, tensions (m1 + m2) g and m2 g.
+TEST(MechanismStudies, FindTheStaticEquilibriumOfThePendulum) {
+  const std::string hanging = level_pendulum() + "[[analysis]]\nname = \"rest\"\ntype = \"static\"\n";
+  const Ran ran = run(hanging);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("rest");
+  ASSERT_EQ(table.rows.size(), 1u);
+  const auto& row = table.rows.front();
+  // Newton's method ends at 1e-10 of the size, about 1 m.
+  EXPECT_NEAR(row[table.column("position", "1.x")], 0.0, 1e-8);
+  EXPECT_NEAR(row[table.column("position", "2.y")], -2.0, 1e-8);
+  const double lower = row[table.column("reaction_tension", "lower")];
+  EXPECT_NEAR(lower, 2.0 * 9.81, 1e-6);
+  EXPECT_NEAR(row[table.column("reaction_tension", "upper")], lower + 5.0 * 9.81, 1e-6);
+}
+
+// Modes about the hanging position solve m1 x^2 - 2 (m1 + m2) x + (m1 + m2) = 0 with x = omega^2/g.
+TEST(MechanismStudies, FindTheModesAboutTheirEquilibrium) {
+  const std::string hanging = level_pendulum() + "[[analysis]]\nname = \"m\"\ntype = \"modes\"\nabout = \"static\"\n";
+  const Ran ran = run(hanging);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("m");
+  ASSERT_EQ(table.rows.size(), 2u);
+  const double root = std::sqrt(49.0 - 35.0);
+  EXPECT_NEAR(table.rows[0][table.column("angular_frequency")], std::sqrt(9.81 * (7.0 - root) / 5.0), 1e-7);
+  EXPECT_NEAR(table.rows[1][table.column("angular_frequency")], std::sqrt(9.81 * (7.0 + root) / 5.0), 1e-7);
+  // Level, where it starts, it is no equilibrium.
+  const Ran level = run(replaced(hanging, "about = \"static\"", ""));
+  ASSERT_FALSE(level.report.warnings.empty());
+  EXPECT_NE(level.report.warnings[0].find("is no equilibrium"), std::string::npos) << level.report.warnings[0];
+}
+
+TEST(MechanismStudies, StartFromTheirStaticEquilibrium) {
+  const std::string hanging = level_pendulum() +
+                              "[[analysis]]\nname = \"m\"\ntype = \"transient\"\ninitial = \"static\"\nstep = 0.01\n"
+                              "duration = 1.0\n";
+  const Ran ran = run(hanging);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("m");
+  for (const auto& row : table.rows) {
+    EXPECT_NEAR(row[table.column("position", "2.x")], 0.0, 1e-7);
+    EXPECT_NEAR(row[table.column("velocity", "2.x")], 0.0, 1e-7);
+  }
+}
+
+TEST(MechanismStudies, RefuseAVelocityBesideAStaticStart) {
+  const std::string text =
+      "[[body]]\nname = \"bob\"\nmass = 2.0\ninertia = 1.0\nposition = [0.0, -1.0]\nvelocity = [1.0, 0.0]\n[[joint]]\n"
+      "type = \"revolute\"\nbetween = [\"ground\", \"bob\"]\nat = [0.0, 0.0]\n[gravity]\nacceleration = [0.0, -10.0]\n"
+      "[[analysis]]\nname = \"m\"\ntype = \"transient\"\ninitial = \"static\"\nstep = 0.01\nduration = 1.0\n";
+  try {
+    run(text);
+    FAIL() << "started";
+  } catch (const InvalidInput& fault) {
+    EXPECT_NE(std::string(fault.what()).find("\"bob.x\" is given a velocity"), std::string::npos) << fault.what();
+  }
+}
+
+// A pendulum of 1 mm finds its equilibrium as one of 1 m does: the search knows no metre.
+TEST(MechanismStudies, FindTheEquilibriumOfSmallMechanisms) {
+  for (const auto& [place, length] : {std::pair{"0.6e-3, 0.0, 0.8e-3", 1e-3}, std::pair{"0.6, 0.0, 0.8", 1.0}}) {
+    const Ran ran = run(std::string("[[body]]\nname = \"bob\"\nshape = { kind = \"sphere\", radius = 1e-4, density = "
+                                    "8000.0 }\nposition = [") +
+                        place +
+                        "]\n[[joint]]\nname = \"J\"\ntype = \"revolute\"\nbetween = [\"ground\", \"bob\"]\nat = [0.0, "
+                        "0.0, 0.0]\naxis = [0.0, 1.0, 0.0]\n[gravity]\nacceleration = [0.0, 0.0, -9.81]\n[[analysis]]\n"
+                        "name = \"rest\"\ntype = \"static\"\n");
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    const auto& table = ran.sink.tables.at("rest");
+    EXPECT_NEAR(table.rows[0][table.column("position", "bob.z")], -length, 1e-8 * length);
+  }
+}
+
+TEST(MechanismStudies, SayWhatNothingResistsWhereThereIsNoEquilibrium) {
+  const Ran ran =
+      run("[[body]]\nname = \"stone\"\nmass = 2.0\ninertia = 1.0\nposition = [0.0, 0.0]\n[gravity]\n"
+          "acceleration = [0.0, -10.0]\n[[analysis]]\nname = \"rest\"\ntype = \"static\"\n");
+  EXPECT_EQ(ran.report.status, analysis::RunStatus::failed);
+  EXPECT_NE(ran.report.message.find("20 N is left on \"stone.y\""), std::string::npos) << ran.report.message;
 }
 
 }  // namespace

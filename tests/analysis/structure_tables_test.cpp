@@ -57,13 +57,14 @@ TEST(StructureTables, CallASupportedNodeOfTrussesPinned) {
 TEST(StructureTables, TellWhereABodyCarriesItsJoints) {
   model::Mechanism m(2);
   const Index crank = m.add_node("crank", {0.5, 0.0, std::numbers::pi / 2.0});
-  const model::PlanePoint at = m.plane_point(crank, 0.0, 0.0), still = m.plane_point(0, 0.0, 0.0);
-  m.lines = {{model::DrawnLine::Kind::body, {m.plane_node(crank), {}}, at}, {model::DrawnLine::Kind::link, at, still}};
+  const model::PlanePoint joint = m.plane_point(crank, 0.0, 0.0);
+  const model::DrawnLine::End at{crank, {joint.offset[0], joint.offset[1], 0.0}}, still{};
+  m.lines = {{model::DrawnLine::Kind::body, {crank, {}}, at}, {model::DrawnLine::Kind::link, at, still}};
   testing::MemorySink sink;
   write_structure("run", m, sink);
   const auto& nodes = sink.tables.at("run.nodes").rows;
   ASSERT_EQ(nodes.size(), 3u);
-  EXPECT_EQ(nodes[0], (std::vector<double>{0, 0.5, 0.0, 0.0, 0, 0, 0.0, 0.0}));
+  EXPECT_EQ(nodes[0], (std::vector<double>{0, 0.5, 0.0, 0.0, 0, 0, 0.0, 0.0, 0.0}));
   EXPECT_EQ(nodes[1][5], 0.0);           // carried by the crank
   EXPECT_NEAR(nodes[1][6], 0.0, 1e-16);  // (-0.5, 0) of the world, in axes that are turned by a right angle
   EXPECT_NEAR(nodes[1][7], 0.5, 1e-16);
@@ -73,6 +74,23 @@ TEST(StructureTables, TellWhereABodyCarriesItsJoints) {
   EXPECT_EQ(lines[0], (std::vector<double>{1, 0, 1, 1}));
   EXPECT_EQ(lines[1], (std::vector<double>{2, 1, 2, 2}));
   EXPECT_EQ(sink.tables.at("run.nodes").layout.attributes.back().second, "3");
+}
+
+// A body turned by a right angle about x: its own z points along -y of the world.
+TEST(StructureTables, TellWhereABodyInSpaceCarriesItsJoints) {
+  model::Mechanism m(3);
+  const Index body =
+      m.add_space_node("body", {1.0, 2.0, 3.0}, numerics::rotation_of({std::numbers::pi / 2.0, 0.0, 0.0}));
+  m.lines = {{model::DrawnLine::Kind::body, {body, {}}, {body, {0.5, 0.0, 0.25}}}};
+  testing::MemorySink sink;
+  write_structure("run", m, sink);
+  const auto& nodes = sink.tables.at("run.nodes").rows;
+  ASSERT_EQ(nodes.size(), 2u);
+  EXPECT_NEAR(nodes[1][1], 1.5, 1e-15);
+  EXPECT_NEAR(nodes[1][2], 1.75, 1e-15);
+  EXPECT_NEAR(nodes[1][3], 3.0, 1e-15);
+  EXPECT_EQ(nodes[1][8], 0.25);
+  EXPECT_EQ(sink.tables.at("run.nodes").layout.attributes.back().second, "6");
 }
 
 TEST(StructureTables, AreNotWrittenForCoordinates) {

@@ -163,7 +163,8 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
             "study.toml:39:6: error: a force is on \"rod.z\", which is no coo");
   EXPECT_EQ(verdict_with("axis = [1.0, 0.0]\n", ""), "study.toml:29:1: error: joint \"C\" lacks the key \"axis\"");
   EXPECT_EQ(verdict_with("axis = [1.0, 0.0]", "axis = [1.0, 0.0]\nmoment = 3"),
-            "study.toml:36:10: error: joint \"C\": \"moment\" belongs to a revolute joint, and this one is prismatic");
+            "study.toml:36:10: error: joint \"C\": \"moment\" belongs to a revolute or screw joint, and this one is "
+            "prismatic");
   EXPECT_EQ(verdict_with("kind = \"latch\"", "kind = \"latch\", damping = 1.0"),
             "study.toml:21:49: error: joint \"A\": lock: damping goes with a stiffness; without one the lock is rigid");
   EXPECT_EQ(verdict_with("name = \"rod\"", "name = \"crank\""),

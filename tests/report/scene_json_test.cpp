@@ -32,8 +32,9 @@ TEST(SceneJson, TellsWhereNodesAreAndWhatJoinsThem) {
   const std::string scene = scene_of(test::add_scene);
   EXPECT_THAT(scene, HasSubstr(R"("names":["a","b","c"],"position":[[0,0,1],[0,1,1],[0,0,0]])"));
   EXPECT_THAT(scene, HasSubstr(R"("support":["clamped","free","free"],"lines":[[0,1],[1,2]],"kinds":[])"));
-  EXPECT_THAT(scene,
-              HasSubstr(R"("is_absolute":false,"carrier":[],"offset":[[],[]],"places":[[1,1,2,2,1,2],[0,1,0,1,5,5]])"));
+  EXPECT_THAT(
+      scene,
+      HasSubstr(R"("is_absolute":false,"carrier":[],"offset":[[],[],[]],"places":[[1,1,2,2,1,2],[0,1,0,1,5,5]])"));
 }
 
 TEST(SceneJson, HoldsTheMotionOfEveryPlaceInEachFrame) {

@@ -3,6 +3,7 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rubato::analysis {
 
@@ -30,9 +31,23 @@ void MechanismInterpolation::take(const system::State& before, const system::Sta
   last_acceleration_ = after.acceleration;
 }
 
+std::size_t MechanismInterpolation::usable() {
+  // Beyond half a turn the shortest way to a rotation leads round the other side.
+  constexpr double largest_turn = 2.0;
+  const auto& is_rotation = mechanism_.model().is_rotation;
+  if (mechanism_.model().dimension == 2) return count_;
+  for (std::size_t age = 2; age < count_; ++age) {
+    mechanism_.difference(knot(1).state.q, knot(age).state.q, part_);
+    for (Index i = 0; i < part_.size(); ++i)
+      if (is_rotation[static_cast<std::size_t>(i)] != 0 && std::abs(part_[i]) > largest_turn) return age;
+  }
+  return count_;
+}
+
 void MechanismInterpolation::at(double t, system::State& state) {
+  const std::size_t count = usable();
   std::array<double, most_knots> times{};
-  for (std::size_t age = 0; age < count_; ++age) {
+  for (std::size_t age = 0; age < count; ++age) {
     Knot& end = knot(age);
     times[age] = end.state.t;
     if (end.is_balanced) continue;
@@ -45,8 +60,8 @@ void MechanismInterpolation::at(double t, system::State& state) {
   state.t = t;
   travel_.setZero();
   for (Vector* values : {&state.v, &state.acceleration, &state.multiplier}) values->setZero();
-  for (std::size_t age = 0; age < count_; ++age) {
-    const double weight = lagrange_weight({times.data(), count_}, age, t);
+  for (std::size_t age = 0; age < count; ++age) {
+    const double weight = lagrange_weight({times.data(), count}, age, t);
     const system::State& end = knot(age).state;
     mechanism_.difference(before.q, end.q, part_);
     travel_ += weight * part_;

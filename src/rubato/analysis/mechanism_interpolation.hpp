@@ -29,6 +29,8 @@ class MechanismInterpolation {
 
   Knot& knot(std::size_t age) { return knots_[(newest_ + most_knots - age) % most_knots]; }
   void add(const system::State& state, model::Side side);
+  /// How many of the knots do not lie too many turns away.
+  std::size_t usable();
 
   const system::Mechanism& mechanism_;
   system::MechanismEquations equations_;

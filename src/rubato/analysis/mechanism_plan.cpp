@@ -1,3 +1,4 @@
+#include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
@@ -21,76 +22,12 @@ std::string row_names(const std::vector<Index>& rows, const system::Mechanism& m
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The start on the constraints; what had to move is told.
-system::State assembled(const Location& where, const system::Mechanism& mechanism, std::vector<std::string>& warnings) {
-  system::MechanismEquations equations(mechanism);
-  const auto start = integrate::make_consistent(equations, mechanism.start());
-  const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
-  if (start.is_assembled && !start.is_consistent) {
-    equations.go_to(start.state, model::Side::right);
-    const std::string part = equations.non_finite_part();
-    throw InvalidInput(where, fmt::format("there are no finite accelerations at the start{}",
-                                          part.empty() ? "" : ": " + part + " is not finite there"));
-  }
-  if (!start.is_consistent) {
-    const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
-    if (!start.redundant.empty())
-      throw InvalidInput(where, fmt::format("the joints cannot be assembled: they contradict each other; \"{}\" stays "
-                                            "apart by {:.4g}, and {} can only repeat what other joints say",
-                                            row, start.gap, row_names(start.redundant, mechanism)));
-    throw InvalidInput(where, fmt::format("the joints cannot be assembled: \"{}\" stays apart by {:.4g}; look at the "
-                                          "places and lengths around it",
-                                          row, start.gap));
-  }
-  if (start.most_moved >= 0)
-    warnings.push_back(
-        fmt::format("the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
-                    "{:.4g}",
-                    coordinate(start.most_moved), start.position_moved));
-  if (start.most_changed >= 0)
-    warnings.push_back(
-        fmt::format("the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
-                    "{:.4g}, which took {:.4g} J",
-                    coordinate(start.most_changed), start.velocity_changed, start.energy_lost));
-  if (!start.redundant.empty())
-    warnings.push_back(
-        fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
-                    "least ones are given",
-                    row_names(start.redundant, mechanism), start.redundant.size() == 1 ? "s" : ""));
-  return start.state;
-}
-
 Index find(const std::string& name, const Location& where, const system::Mechanism& mechanism) {
   const auto& known = mechanism.coordinates();
   const auto found = std::find(known.begin(), known.end(), name);
   if (found != known.end()) return static_cast<Index>(found - known.begin());
   throw InvalidInput(where,
                      fmt::format("observe names \"{}\", which is no coordinate{}", name, suggestion(name, known)));
-}
-
-std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
-                                      const system::Mechanism& mechanism) {
-  const auto is_rotation = [&](Index i) { return mechanism.model().is_rotation[static_cast<std::size_t>(i)] != 0; };
-  std::vector<Observed> observed;
-  if (!wanted)
-    for (Index i = 0; i < mechanism.size(); ++i)
-      observed.push_back({mechanism.coordinates()[static_cast<std::size_t>(i)], i, ground, is_rotation(i)});
-  else
-    for (const auto& one : *wanted) {
-      const Index first = find(one.first, one.where, mechanism);
-      if (one.second.empty()) {
-        observed.push_back({one.first, first, ground, is_rotation(first)});
-        continue;
-      }
-      const Index second = find(one.second, one.where, mechanism);
-      if (is_rotation(first) != is_rotation(second))
-        throw InvalidInput(one.where, fmt::format("observe: \"{} - {}\" is the difference of a position [m] and a "
-                                                  "rotation [rad]",
-                                                  one.first, one.second));
-      observed.push_back({one.first + " - " + one.second, first, second, is_rotation(first)});
-    }
-  std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
-  return observed;
 }
 
 /// A sixth of the shortest period of a harmonic load.
@@ -155,6 +92,70 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
 
 }  // namespace
 
+system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
+                              std::vector<std::string>& warnings) {
+  system::MechanismEquations equations(mechanism);
+  const auto start = integrate::make_consistent(equations, mechanism.start());
+  const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
+  if (start.is_assembled && !start.is_consistent) {
+    equations.go_to(start.state, model::Side::right);
+    const std::string part = equations.non_finite_part();
+    throw InvalidInput(where, fmt::format("there are no finite accelerations at the start{}",
+                                          part.empty() ? "" : ": " + part + " is not finite there"));
+  }
+  if (!start.is_consistent) {
+    const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
+    if (!start.redundant.empty())
+      throw InvalidInput(where, fmt::format("the joints cannot be assembled: they contradict each other; \"{}\" stays "
+                                            "apart by {:.4g}, and {} can only repeat what other joints say",
+                                            row, start.gap, row_names(start.redundant, mechanism)));
+    throw InvalidInput(where, fmt::format("the joints cannot be assembled: \"{}\" stays apart by {:.4g}; look at the "
+                                          "places and lengths around it",
+                                          row, start.gap));
+  }
+  if (start.most_moved >= 0)
+    warnings.push_back(
+        fmt::format("the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
+                    "{:.4g}",
+                    coordinate(start.most_moved), start.position_moved));
+  if (start.most_changed >= 0)
+    warnings.push_back(
+        fmt::format("the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
+                    "{:.4g}, which took {:.4g} J",
+                    coordinate(start.most_changed), start.velocity_changed, start.energy_lost));
+  if (!start.redundant.empty())
+    warnings.push_back(
+        fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
+                    "least ones are given",
+                    row_names(start.redundant, mechanism), start.redundant.size() == 1 ? "s" : ""));
+  return start.state;
+}
+
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::Mechanism& mechanism) {
+  const auto is_rotation = [&](Index i) { return mechanism.model().is_rotation[static_cast<std::size_t>(i)] != 0; };
+  std::vector<Observed> observed;
+  if (!wanted)
+    for (Index i = 0; i < mechanism.size(); ++i)
+      observed.push_back({mechanism.coordinates()[static_cast<std::size_t>(i)], i, ground, is_rotation(i)});
+  else
+    for (const auto& one : *wanted) {
+      const Index first = find(one.first, one.where, mechanism);
+      if (one.second.empty()) {
+        observed.push_back({one.first, first, ground, is_rotation(first)});
+        continue;
+      }
+      const Index second = find(one.second, one.where, mechanism);
+      if (is_rotation(first) != is_rotation(second))
+        throw InvalidInput(one.where, fmt::format("observe: \"{} - {}\" is the difference of a position [m] and a "
+                                                  "rotation [rad]",
+                                                  one.first, one.second));
+      observed.push_back({one.first + " - " + one.second, first, second, is_rotation(first)});
+    }
+  std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
+  return observed;
+}
+
 std::string MechanismPlan::summary() const {
   if (std::holds_alternative<integrate::FixedStep>(transient.automatic->plan.controller))
     return fmt::format("transient, {}, {:.0f} steps of {} s to t = {} s", transient.method.name,
@@ -178,11 +179,20 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   }
   transient.duration = positive_or(description.duration, 0.0, title + "duration", parameters);
   transient.energy = description.energy;
-  if (description.initial)
-    throw InvalidInput(where, title +
-                                  "initial = \"static\" is for structures; a mechanism starts from its "
-                                  "configuration");
-  transient.start = assembled(where, mechanism, plan.warnings);
+  transient.start = assembled_start(where, mechanism, plan.warnings);
+  if (description.initial) {
+    refuse_displacements(title, *description.initial);
+    Index fastest = 0;
+    if (mechanism.size() > 0 && mechanism.start().v.cwiseAbs().maxCoeff(&fastest) > 0.0)
+      throw InvalidInput(
+          where, fmt::format("{}initial = \"static\" starts at rest, and \"{}\" is given a velocity; remove one "
+                             "of them",
+                             title, mechanism.coordinates()[static_cast<std::size_t>(fastest)]));
+    const MechanismStatic found = equilibrium_near(transient.start, mechanism);
+    if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
+      throw InvalidInput(where, title + complaint);
+    transient.start = found.state;
+  }
   if (description.automatic_step) {
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
                                          transient.start, parameters, transient.duration);

@@ -17,6 +17,15 @@ struct MechanismPlan {
   std::string summary() const;
 };
 
+/// The start of a mechanism on its constraints. What had to move, and constraints that repeat others, are told in
+/// `warnings`. Throws InvalidInput, naming the joints and by how much they are apart, where they cannot be assembled.
+system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
+                              std::vector<std::string>& warnings);
+
+/// What is asked for, or every coordinate: displacements, then rotations. Throws InvalidInput for an unknown name.
+std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
+                                      const system::Mechanism& mechanism);
+
 /// Evaluates a description, assembles the mechanism and checks that it can run. Throws InvalidInput, naming the joints
 /// and by how much they are apart, where they cannot be assembled, and for a method that constraints do not go with.
 MechanismPlan plan_mechanism(const std::string& name, const Location& where,

@@ -9,45 +9,19 @@
 namespace rubato::analysis {
 namespace {
 
-using Kind = model::PlaneCoordinate::Kind;
-
 results::Block scalar(const std::string& variable, const std::string& unit, const std::string& description) {
   return {variable, unit, description, "", {}};
-}
-
-/// Angles of joints stand beside the rotations of nodes, after all coordinates.
-std::vector<Observed> with_angles(std::vector<Observed> observed, const system::Mechanism& mechanism) {
-  Index place = mechanism.size();
-  for (const auto& joint : mechanism.model().joint_coordinates)
-    if (joint.s.kind == Kind::angle) observed.push_back({joint.name, place++, ground, true});
-  return observed;
-}
-
-std::vector<std::string> sliding_joints(const system::Mechanism& mechanism) {
-  std::vector<std::string> names;
-  for (const auto& joint : mechanism.model().joint_coordinates)
-    if (joint.s.kind == Kind::displacement) names.push_back(joint.name);
-  return names;
-}
-
-/// Extends a vector of coordinates by the differences that the angles of joints are.
-void add_angles(const system::Mechanism& mechanism, const Vector& of_coordinates, Vector& out) {
-  out.head(of_coordinates.size()) = of_coordinates;
-  Index place = of_coordinates.size();
-  for (const auto& joint : mechanism.model().joint_coordinates) {
-    if (joint.s.kind != Kind::angle) continue;
-    const auto turn = [&](const model::PlaneNode& node) {
-      return node.place[2] == ground ? 0.0 : of_coordinates[node.place[2]];
-    };
-    out[place++] = turn(joint.s.along.second.node) - turn(joint.s.along.first.node);
-  }
 }
 
 }  // namespace
 
 MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPlan& plan,
                                      const system::Mechanism& mechanism, results::Sink& sink)
-    : mechanism_(mechanism), observed_(with_angles(plan.transient.observed, mechanism)), equations_(mechanism) {
+    : mechanism_(mechanism),
+      joints_(mechanism),
+      observed_(joints_.with_angles(plan.transient.observed)),
+      reactions_(mechanism),
+      equations_(mechanism) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time = scalar("time", "s", "time");
   results::TableLayout layout{name,
@@ -60,7 +34,8 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                                                                  : fmt::format("{} s", plan.transient.step)},
                                {"duration", fmt::format("{} s", plan.transient.duration)}}};
   observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
-  add_joints(layout);
+  joints_.add_displacements(layout);
+  reactions_.add(layout);
   rows_ = sink.open(layout);
   if (!plan.transient.energy) return;
   energy_rows_ = sink.open({name,
@@ -75,48 +50,18 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                             {{"type", "energy"}}});
 }
 
-void MechanismRecorder::add_joints(results::TableLayout& layout) {
-  const auto names = sliding_joints(mechanism_);
-  if (!names.empty())
-    layout.blocks.push_back({"displacement", "m", "displacement of each prismatic joint", "sliding_joint", names});
-  Index row = 0;
-  for (const auto& joint : mechanism_.model().joints)
-    for (const std::string& name : joint->row_names()) {
-      auto found =
-          std::find_if(reactions_.begin(), reactions_.end(), [&](const Reaction& r) { return r.name == name; });
-      if (found == reactions_.end()) found = reactions_.insert(found, Reaction{name, {}, {}, -1.0});
-      found->joints.push_back(joint->name());
-      found->rows.push_back(row++);
-    }
-  for (Reaction& reaction : reactions_) {
-    const bool is_tension = reaction.name == "tension", is_moment = reaction.name == "moment";
-    if (is_tension) reaction.sign = 1.0;
-    layout.blocks.push_back({"reaction_" + reaction.name, is_moment ? "N m" : "N",
-                             is_tension ? "tension of each link" : "what each joint does to its second part",
-                             "reaction_" + reaction.name + "_joint", reaction.joints});
-  }
-}
-
 void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
   balanced_ = state;
   if (!is_balanced && !integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
-  mechanism_.coordinate_values(state.q, values_);
-  const auto& joints = mechanism_.model().joint_coordinates;
-  for (Vector* all : {&positions_, &velocities_, &accelerations_})
-    all->resize(mechanism_.size() + static_cast<Index>(joints.size()));
-  add_angles(mechanism_, values_, positions_);
-  add_angles(mechanism_, state.v, velocities_);
-  add_angles(mechanism_, balanced_.acceleration, accelerations_);
-  Index place = mechanism_.size();
-  for (const auto& joint : joints)
-    if (joint.s.kind == Kind::angle) positions_[place++] = joint.s.value(state.q.data());
+  joints_.go_to(state);
+  joints_.positions(positions_);
+  joints_.velocities(velocities_);
+  joints_.accelerations(balanced_.acceleration, accelerations_);
   row_.clear();
   row_.push_back(state.t);
   observed_.append({&positions_, &velocities_, &accelerations_}, row_);
-  for (const auto& joint : joints)
-    if (joint.s.kind == Kind::displacement) row_.push_back(joint.s.value(state.q.data()));
-  for (const Reaction& reaction : reactions_)
-    for (const Index row : reaction.rows) row_.push_back(reaction.sign * balanced_.multiplier[row]);
+  joints_.append_displacements(row_);
+  reactions_.append(joints_.motion(), balanced_.multiplier, row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rubato/analysis/joint_coordinates.hpp>
+#include <rubato/analysis/joint_reactions.hpp>
 #include <rubato/analysis/mechanism_ledger.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/analysis/observed_blocks.hpp>
@@ -17,8 +19,6 @@ namespace rubato::analysis {
 ///
 /// Accelerations and reactions are those of equilibrium at the positions and velocities of the row: the multipliers of
 /// a step carry what the constraints do to velocities that have drifted, over the length of that step.
-///
-/// A reaction is what a joint does to its second node (to its first the opposite), a tension pulls.
 class MechanismRecorder {
  public:
   MechanismRecorder(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
@@ -30,21 +30,13 @@ class MechanismRecorder {
   long rows() const { return count_; }
 
  private:
-  /// Rows of constraints that bear one name, "x" or "moment".
-  struct Reaction {
-    std::string name;
-    std::vector<std::string> joints;
-    std::vector<Index> rows;
-    double sign = -1.0;
-  };
-  void add_joints(results::TableLayout& layout);
-
   const system::Mechanism& mechanism_;
+  JointCoordinates joints_;
   ObservedBlocks observed_;
-  std::vector<Reaction> reactions_;
+  JointReactions reactions_;
   system::MechanismEquations equations_;
   system::State balanced_;
-  Vector values_, positions_, velocities_, accelerations_;
+  Vector positions_, velocities_, accelerations_;
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;
   long count_ = 0;

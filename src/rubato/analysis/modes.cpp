@@ -15,11 +15,6 @@ constexpr Index largest_dense = 3000;  // all modes of it take minutes
 
 const std::vector<std::string> limits{"free", "stuck"};
 
-struct LimitModes {
-  std::size_t limit;
-  numerics::DampedModes found;
-};
-
 bool has_complex(const std::vector<LimitModes>& all) {
   for (const auto& [limit, found] : all)
     for (const auto& mode : found.modes)
@@ -27,7 +22,7 @@ bool has_complex(const std::vector<LimitModes>& all) {
   return false;
 }
 
-results::TableLayout layout_of(const std::string& name, const ModesPlan& plan, bool is_complex) {
+results::TableLayout layout_of(const std::string& name, const std::vector<Observed>& observed, bool is_complex) {
   const auto scalar = [](const std::string& variable, const std::string& unit, const std::string& description) {
     return results::Block{variable, unit, description, "", {}};
   };
@@ -44,33 +39,14 @@ results::TableLayout layout_of(const std::string& name, const ModesPlan& plan, b
        scalar("eigenvalue_imaginary", "rad/s", "angular frequency of the damped motion")},
       {{"type", "modes"}, {"normalisation", "conj(shape)^T M shape = 1; the largest entry is real and positive"}}};
   // With q = shape * (modal coordinate): the latter in m sqrt(kg), for displacements and rotations alike.
-  add_blocks(plan.observed, {"shape", "1/sqrt(kg)", "shape, with a modal mass of 1"},
+  add_blocks(observed, {"shape", "1/sqrt(kg)", "shape, with a modal mass of 1"},
              {"angle_shape", "rad/(m sqrt(kg))", "shape of the rotations, on the scale of the displacements"},
              layout.blocks);
   if (is_complex)
-    add_blocks(plan.observed, {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead"},
+    add_blocks(observed, {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead"},
                {"angle_shape_imaginary", "rad/(m sqrt(kg))", "imaginary part of the shape of the rotations"},
                layout.blocks);
   return layout;
-}
-
-void write(const std::string& name, const ModesPlan& plan, const std::vector<LimitModes>& all, results::Sink& sink) {
-  const bool is_complex = has_complex(all);
-  const auto rows = sink.open(layout_of(name, plan, is_complex));
-  for (const auto& [limit, found] : all) {
-    double number = 0.0;
-    for (const auto& mode : found.modes) {
-      std::vector<double> row{static_cast<double>(limit), ++number,
-                              mode.angular_frequency,     mode.angular_frequency / (2.0 * std::numbers::pi),
-                              mode.damping_ratio,         mode.eigenvalue.real(),
-                              mode.eigenvalue.imag()};
-      const Vector real = mode.shape.real(), imaginary = mode.shape.imag();
-      for (const auto& observed : plan.observed) row.push_back(observed.of(real));
-      if (is_complex)
-        for (const auto& observed : plan.observed) row.push_back(observed.of(imaginary));
-      rows->append(row);
-    }
-  }
 }
 
 std::string complaint(const std::vector<LimitModes>& all, Index count) {
@@ -90,10 +66,35 @@ std::string complaint(const std::vector<LimitModes>& all, Index count) {
 
 }  // namespace
 
+void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
+                 results::Sink& sink) {
+  const bool is_complex = has_complex(all);
+  const auto rows = sink.open(layout_of(name, observed, is_complex));
+  for (const auto& [limit, found] : all) {
+    double number = 0.0;
+    for (const auto& mode : found.modes) {
+      std::vector<double> row{static_cast<double>(limit), ++number,
+                              mode.angular_frequency,     mode.angular_frequency / (2.0 * std::numbers::pi),
+                              mode.damping_ratio,         mode.eigenvalue.real(),
+                              mode.eigenvalue.imag()};
+      const Vector real = mode.shape.real(), imaginary = mode.shape.imag();
+      for (const auto& one : observed) row.push_back(one.of(real));
+      if (is_complex)
+        for (const auto& one : observed) row.push_back(one.of(imaginary));
+      rows->append(row);
+    }
+  }
+}
+
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
                      const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
   const std::string title = "analysis \"" + name + "\": ";
   const Index n = system.size();
+  if (description.about_equilibrium)
+    throw InvalidInput(*description.about_equilibrium,
+                       title +
+                           "about = \"static\" is for mechanisms; the modes of a structure are those of its linear "
+                           "model, whatever the loads");
   ModesPlan plan;
   plan.count = std::min(n, default_count);
   if (description.count) {
@@ -127,7 +128,7 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const system
     context.progress.advance(static_cast<double>(limit + 1));
   }
   context.progress.end();
-  write(name, plan, all, context.sink);
+  write_modes(name, plan.observed, all, context.sink);
   report.message = complaint(all, plan.count);
   if (!report.message.empty()) {
     report.status = RunStatus::failed;

@@ -2,6 +2,10 @@
 
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/transient_plan.hpp>
+#include <rubato/numerics/eigen_damped.hpp>
+
+#include <string>
+#include <vector>
 
 namespace rubato::analysis {
 
@@ -16,6 +20,16 @@ struct ModesPlan {
 /// of coordinates, and for more than a third of the modes of a model beyond 3,000 coordinates.
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
                      const system::LocallyNonlinear& system, const numerics::Parameters& parameters);
+
+/// The modes of a limit: 0 `free`, 1 `stuck`.
+struct LimitModes {
+  std::size_t limit;
+  numerics::DampedModes found;
+};
+
+/// Writes the table of run_modes.
+void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
+                 results::Sink& sink);
 
 /// One row a mode: limit, number, angular frequency, frequency, damping ratio, eigenvalue and shape (with phi^H M phi =
 /// 1; its imaginary part where damping makes a mode of either limit complex). Modes that did not converge, or that a

@@ -1,3 +1,5 @@
+#include <rubato/analysis/mechanism_equilibrium.hpp>
+#include <rubato/analysis/mechanism_modes.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
@@ -177,35 +179,59 @@ bool is_drawn(const model::AnalysisDescription& analysis) {
 
 namespace {
 
-/// A mechanism is marched; the other analyses are of structures.
-const model::TransientDescription& transient_of(const model::AnalysisDescription& analysis) {
-  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) return *transient;
+[[noreturn]] void refuse_of_mechanism(const model::AnalysisDescription& analysis) {
   throw InvalidInput(analysis.where,
                      fmt::format("analysis \"{}\": a mechanism (bodies, joints, geometrically exact beams) is analysed "
-                                 "by type = \"transient\"",
+                                 "by type = \"transient\", \"static\" or \"modes\"",
                                  analysis.name));
+}
+
+AnalysisOutline check_mechanism(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  const system::Mechanism& mechanism = *input.mechanism;
+  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
+    const MechanismPlan plan = plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters);
+    return {plan.summary(),
+            plan.transient.rows * (10.0 + 3.0 * static_cast<double>(plan.transient.observed.size())) * 28.0};
+  }
+  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
+    check_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism);
+    return {"static equilibrium of a mechanism", 100.0 * static_cast<double>(mechanism.size())};
+  }
+  if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task)) {
+    (void)plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input.parameters);
+    return {"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(mechanism.size())};
+  }
+  refuse_of_mechanism(analysis);
+}
+
+RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, const StudyInput& input,
+                                 RunContext& context) {
+  const system::Mechanism& mechanism = *input.mechanism;
+  if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
+    return run_mechanism(analysis.name,
+                         plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters),
+                         mechanism, context);
+  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task))
+    return run_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism, context);
+  if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
+    return run_mechanism_modes(analysis.name,
+                               plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input.parameters),
+                               mechanism, context);
+  refuse_of_mechanism(analysis);
 }
 
 }  // namespace
 
 AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
-  if (input.mechanism) {
-    const MechanismPlan plan =
-        plan_mechanism(analysis.name, analysis.where, transient_of(analysis), *input.mechanism, input.parameters);
-    return {plan.summary(),
-            plan.transient.rows * (10.0 + 3.0 * static_cast<double>(plan.transient.observed.size())) * 28.0};
-  }
-  return std::visit(Check{analysis, input}, analysis.task);
+  return input.mechanism ? check_mechanism(analysis, input) : std::visit(Check{analysis, input}, analysis.task);
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
-  RunReport report = input.mechanism
-                         ? run_mechanism(analysis.name,
-                                         plan_mechanism(analysis.name, analysis.where, transient_of(analysis),
-                                                        *input.mechanism, input.parameters),
-                                         *input.mechanism, context)
-                         : std::visit(Run{analysis, input, context}, analysis.task);
-  if (input.mechanism) write_structure(analysis.name, input.mechanism->model(), context.sink);
+  RunReport report = input.mechanism ? run_mechanism_analysis(analysis, input, context)
+                                     : std::visit(Run{analysis, input, context}, analysis.task);
+  // Shapes are motions about a configuration, which the pictures of mechanisms do not know.
+  if (input.mechanism && !std::holds_alternative<model::ModesDescription>(analysis.task))
+    write_structure(analysis.name, input.mechanism->model(), context.sink);
   const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();
   if (is_drawn(analysis) && nodes > 0 && nodes <= most_drawn_nodes)
     write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);

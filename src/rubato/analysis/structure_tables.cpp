@@ -1,4 +1,5 @@
 #include <rubato/analysis/structure_tables.hpp>
+#include <rubato/numerics/rotations.hpp>
 
 #include <algorithm>
 #include <array>
@@ -82,36 +83,39 @@ void write_structure(const std::string& analysis, const model::Structure& struct
 }
 
 void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink) {
-  if (mechanism.dimension != 2 || mechanism.lines.empty() || mechanism.nodes.size() > most_drawn_nodes) return;
+  if (mechanism.lines.empty() || mechanism.nodes.size() > most_drawn_nodes) return;
   struct Point {
     std::string name;
     double carrier;
-    std::array<double, 2> at, offset;
+    std::array<double, 3> at, offset;
     Support support;
   };
+  const bool in_space = mechanism.dimension == 3;
   std::vector<Point> points;
   for (std::size_t i = 1; i < mechanism.nodes.size(); ++i) {  // the first is the ground
     const auto& node = mechanism.nodes[i];
-    const bool is_still = node.place[0] == ground && node.place[1] == ground;
+    const bool is_still = node.place[0] == ground && node.place[1] == ground && (!in_space || node.place[2] == ground);
     points.push_back({node.name,
                       static_cast<double>(points.size()),
-                      {node.numbers[0], node.numbers[1]},
-                      {0.0, 0.0},
+                      {node.numbers[0], node.numbers[1], in_space ? node.numbers[2] : 0.0},
+                      {0.0, 0.0, 0.0},
                       is_still ? pinned : free_to_move});
   }
-  std::vector<double> q;
-  for (const auto& node : mechanism.nodes) q.insert(q.end(), node.numbers.begin(), node.numbers.begin() + 3);
-  const auto place_of = [&](const model::PlanePoint& point) {
-    const double carrier = static_cast<double>(point.node.q / model::plane_numbers) - 1.0;
-    if (carrier >= 0.0 && point.offset[0] == 0.0 && point.offset[1] == 0.0) return carrier;
+  const auto where = [&](const model::DrawnLine::End& end) {
+    const auto& numbers = mechanism.nodes[static_cast<std::size_t>(end.node)].numbers;
+    const numerics::Vector3 offset(end.offset[0], end.offset[1], end.offset[2]);
+    const numerics::Rotation turn = in_space ? numerics::Rotation(numbers[3], numbers[4], numbers[5], numbers[6])
+                                             : numerics::rotation_of({0.0, 0.0, numbers[2]});
+    const numerics::Vector3 moved = turn * offset;
+    return std::array<double, 3>{numbers[0] + moved[0], numbers[1] + moved[1], in_space ? numbers[2] + moved[2] : 0.0};
+  };
+  const auto place_of = [&](const model::DrawnLine::End& end) {
+    const double carrier = static_cast<double>(end.node) - 1.0;
+    if (carrier >= 0.0 && end.offset == std::array<double, 3>{}) return carrier;
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (points[i].carrier == carrier && points[i].offset == point.offset) return static_cast<double>(i);
-    const auto now = point.at(q.data());
-    const std::string of = mechanism.nodes[static_cast<std::size_t>(point.node.q / model::plane_numbers)].name;
-    points.push_back({of + ":" + std::to_string(points.size() + 1),
-                      carrier,
-                      {now.x, now.y},
-                      point.offset,
+      if (points[i].carrier == carrier && points[i].offset == end.offset) return static_cast<double>(i);
+    const std::string of = mechanism.nodes[static_cast<std::size_t>(end.node)].name;
+    points.push_back({of + ":" + std::to_string(points.size() + 1), carrier, where(end), end.offset,
                       carrier < 0.0 ? pinned : free_to_move});
     return static_cast<double>(points.size() - 1);
   };
@@ -136,12 +140,20 @@ void write_structure(const std::string& analysis, const model::Mechanism& mechan
         {"support", "1", "what is fixed", "", {}, {"free", "held", "pinned", "clamped"}},
         number("carrier", "1", "row of the node that carries it; -1: the ground"),
         number("offset_x", "m", "place in the axes of the carrier"),
-        number("offset_y", "m", "place in the axes of the carrier")},
+        number("offset_y", "m", "place in the axes of the carrier"),
+        number("offset_z", "m", "place in the axes of the carrier")},
        {{"type", "nodes"}, {"motion", "position"}, {"degrees_of_freedom", std::to_string(mechanism.size())}}});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& p = points[i];
-    const std::array<double, 8> row{static_cast<double>(i),         p.at[0],   p.at[1],     0.0,
-                                    static_cast<double>(p.support), p.carrier, p.offset[0], p.offset[1]};
+    const std::array<double, 9> row{static_cast<double>(i),
+                                    p.at[0],
+                                    p.at[1],
+                                    p.at[2],
+                                    static_cast<double>(p.support),
+                                    p.carrier,
+                                    p.offset[0],
+                                    p.offset[1],
+                                    p.offset[2]};
     nodes->append(row);
   }
   const auto lines = sink.open({analysis,

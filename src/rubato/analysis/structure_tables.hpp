@@ -16,7 +16,7 @@ inline constexpr std::size_t most_drawn_nodes = 20'000;
 /// most_drawn_nodes.
 void write_structure(const std::string& analysis, const model::Structure& structure, results::Sink& sink);
 
-/// Likewise of a mechanism in the plane: its nodes, the points of bodies and of the ground at which lines end, each
+/// Likewise of a mechanism: its nodes, the points of bodies and of the ground at which lines end, each
 /// with the node that carries it (`carrier`, a row; itself, or -1 for the ground) and its place there (`offset_x`,
 /// `offset_y` [m], in the axes of that node); and lines of the kinds beam, body and link. The main table tells
 /// positions.

@@ -141,6 +141,7 @@ ModesDescription read_modes(TomlReader& reader) {
   ModesDescription modes;
   modes.count = reader.optional_quantity("count");
   modes.observe = read_observe(reader);
+  if (reader.optional_word("about", {"given", "static"}) == "static") modes.about_equilibrium = reader.where("about");
   return modes;
 }
 

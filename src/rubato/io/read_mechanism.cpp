@@ -1,6 +1,7 @@
 #include <rubato/io/read_parts.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -23,12 +24,54 @@ std::vector<Quantity> optional_one_or_more(TomlReader& reader, const std::string
   return {*reader.optional_quantity(key)};
 }
 
-BodyDescription read_body(TomlReader& reader) {
-  BodyDescription body;
-  body.name = reader.name("name", &body.where);
-  reader.rename(fmt::format("body \"{}\"", body.name));
-  body.mass = reader.quantity("mass");
+ShapeDescription read_shape(TomlReader& reader) {
+  const std::vector<std::string> kinds{"box", "cylinder", "sphere"};
+  ShapeDescription shape;
+  shape.where = reader.where();
+  const auto kind = reader.optional_word("kind", kinds);
+  if (!kind) {
+    reader.refuse_misspelling_of("kind");
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} lacks the key \"kind\": \"box\", \"cylinder\" or \"sphere\"", reader.what()));
+  }
+  shape.kind = static_cast<ShapeDescription::Kind>(std::find(kinds.begin(), kinds.end(), *kind) - kinds.begin());
+  if (shape.kind == ShapeDescription::Kind::box) {
+    shape.size = optional_point(reader, "size");
+    if (shape.size.size() != 3) {
+      reader.refuse_misspelling_of("size");
+      throw InvalidInput(
+          reader.where("size"),
+          fmt::format("{} needs \"size\": three lengths along x, y and z of the body [m]", reader.what()));
+    }
+  } else {
+    shape.radius = reader.quantity("radius");
+    if (shape.kind == ShapeDescription::Kind::cylinder) shape.length = reader.quantity("length");
+  }
+  shape.density = reader.optional_quantity("density");
+  reader.finish();
+  return shape;
+}
+
+/// A body has a mass and an inertia, or a shape and a mass, or a shape and a density.
+void read_inertia(TomlReader& reader, BodyDescription& body) {
+  body.mass = reader.optional_quantity("mass");
   body.inertia = optional_one_or_more(reader, "inertia");
+  body.inertia_where = reader.where("inertia");
+  if (auto shape = reader.optional_table("shape", fmt::format("{}: shape", reader.what()))) {
+    body.shape = read_shape(*shape);
+    if (!body.inertia.empty())
+      throw InvalidInput(body.inertia_where,
+                         fmt::format("{}: inertia follows from its shape; remove one of them", reader.what()));
+    if (body.mass.has_value() == body.shape->density.has_value())
+      throw InvalidInput(body.shape->where, fmt::format("{}: its shape needs \"density\" [kg/m3], or the body \"mass\" "
+                                                        "[kg]; one of them",
+                                                        reader.what()));
+    return;
+  }
+  if (!body.mass) {
+    reader.refuse_misspelling_of("mass");
+    throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"mass\"", reader.what()));
+  }
   if (body.inertia.empty()) {
     reader.refuse_misspelling_of("inertia");
     throw InvalidInput(reader.where(),
@@ -36,12 +79,27 @@ BodyDescription read_body(TomlReader& reader) {
                                    "a [[mass]]",
                                    reader.what()));
   }
+}
+
+BodyDescription read_body(TomlReader& reader) {
+  BodyDescription body;
+  body.name = reader.name("name", &body.where);
+  reader.rename(fmt::format("body \"{}\"", body.name));
+  read_inertia(reader, body);
   body.position = optional_point(reader, "position");
   if (body.position.empty()) {
     reader.refuse_misspelling_of("position");
     throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"position\"", reader.what()));
   }
   body.angle = reader.optional_quantity("angle");
+  body.rotation = optional_point(reader, "rotation");
+  body.rotation_where = reader.where("rotation");
+  if (body.rotation.size() == 4)
+    throw InvalidInput(
+        body.rotation_where,
+        fmt::format("{}: rotation is a rotation vector of three numbers, the axis times the angle [rad], "
+                    "and no quaternion: of (w, x, y, z) it is 2 acos(w)/sin(acos(w)) times [x, y, z]",
+                    reader.what()));
   body.velocity = optional_point(reader, "velocity");
   body.angular_velocity = optional_one_or_more(reader, "angular_velocity");
   reader.finish();
@@ -69,39 +127,46 @@ LockDescription read_lock(TomlReader& reader) {
 
 /// The keys that belong to one type of joint each; others are refused with the types that take them.
 void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
-  const std::map<std::string, std::vector<std::string>> takers{{"angle", {"revolute"}},
-                                                               {"moment", {"revolute"}},
-                                                               {"displacement", {"prismatic"}},
-                                                               {"force", {"prismatic"}},
-                                                               {"axis", {"prismatic"}},
-                                                               {"length", {"distance"}},
-                                                               {"stiffness", {"revolute", "prismatic"}},
-                                                               {"damping", {"revolute", "prismatic"}},
-                                                               {"rest", {"revolute", "prismatic"}},
-                                                               {"lock", {"revolute", "prismatic"}}};
+  const std::vector<std::string> of_one_coordinate{"revolute", "prismatic", "screw"};
+  const std::map<std::string, std::vector<std::string>> takers{
+      {"angle", {"revolute", "screw"}},
+      {"moment", {"revolute", "screw"}},
+      {"displacement", {"prismatic"}},
+      {"force", {"prismatic"}},
+      {"axis", {"revolute", "prismatic", "cylindrical", "universal", "planar", "screw"}},
+      {"second_axis", {"universal"}},
+      {"lead", {"screw"}},
+      {"length", {"distance"}},
+      {"stiffness", of_one_coordinate},
+      {"damping", of_one_coordinate},
+      {"rest", of_one_coordinate},
+      {"lock", {"revolute", "prismatic"}}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
-    throw InvalidInput(reader.where(key),
-                       fmt::format("{}: \"{}\" belongs to a {} joint, and this one is {}", reader.what(), key,
-                                   types.size() > 1 ? types[0] + " or " + types[1] : types[0], type));
+    const std::string last = types.size() > 1 ? " or " + types.back() : "";
+    throw InvalidInput(
+        reader.where(key),
+        fmt::format("{}: \"{}\" belongs to a {}{} joint, and this one is {}", reader.what(), key,
+                    fmt::join(types.begin(), types.end() - (types.size() > 1 ? 1 : 0), ", "), last, type));
   }
 }
+
+const std::vector<std::string> joint_types{"rigid",     "revolute",  "prismatic", "distance", "cylindrical",
+                                           "spherical", "universal", "planar",    "screw"};
 
 JointDescription read_joint(TomlReader& reader, std::size_t number) {
   JointDescription joint;
   joint.name = reader.optional_text("name").value_or(fmt::format("joint{}", number));
   joint.where = reader.where("name");
   reader.rename(fmt::format("joint \"{}\"", joint.name));
-  const std::vector<std::string> types{"rigid", "revolute", "prismatic", "distance"};
-  const auto type = reader.optional_word("type", types);
+  const auto type = reader.optional_word("type", joint_types);
   if (!type) {
     reader.refuse_misspelling_of("type");
-    throw InvalidInput(reader.where(),
-                       fmt::format("{} lacks the key \"type\": \"revolute\", \"prismatic\", \"rigid\" or "
-                                   "\"distance\"",
-                                   reader.what()));
+    throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"type\": \"{}\"", reader.what(),
+                                                   fmt::join(joint_types, "\", \"")));
   }
-  joint.type = static_cast<JointDescription::Type>(std::find(types.begin(), types.end(), *type) - types.begin());
+  joint.type = static_cast<JointDescription::Type>(std::find(joint_types.begin(), joint_types.end(), *type) -
+                                                   joint_types.begin());
   refuse_foreign_keys(reader, *type);
   joint.between = reader.between("between", joint.between_where);
   joint.at = optional_point(reader, "at");
@@ -110,6 +175,9 @@ JointDescription read_joint(TomlReader& reader, std::size_t number) {
   joint.to_where = reader.where("to");
   joint.axis = optional_point(reader, "axis");
   joint.axis_where = reader.where("axis");
+  joint.second_axis = optional_point(reader, "second_axis");
+  joint.second_axis_where = reader.where("second_axis");
+  joint.lead = reader.optional_quantity("lead");
   const bool is_prismatic = joint.type == JointDescription::Type::prismatic;
   if (is_prismatic && joint.axis.empty()) {
     reader.refuse_misspelling_of("axis");

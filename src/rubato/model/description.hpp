@@ -332,6 +332,7 @@ struct FrequencyResponseDescription {
 struct ModesDescription {
   std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
   std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
+  std::optional<Location> about_equilibrium;                   ///< of a mechanism: where that was asked for
 };
 
 struct DamperCurveDescription {

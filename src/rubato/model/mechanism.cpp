@@ -48,12 +48,28 @@ Index Mechanism::add_space_node(const std::string& name, const numerics::Vector3
 
 void Mechanism::add_space_body(Index node, double mass, const numerics::Matrix3& inertia) {
   for (std::size_t axis = 0; axis < 3; ++axis) masses.push_back({node, node, axis, axis, mass});
+  add_space_inertia(node, inertia);
+}
+
+void Mechanism::add_space_inertia(Index node, const numerics::Matrix3& inertia) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = i; j < 3; ++j) {
       const double value = inertia(static_cast<Index>(i), static_cast<Index>(j));
       if (value != 0.0) masses.push_back({node, node, 3 + i, 3 + j, value});
     }
   elements.push_back(make_gyroscopic_moment(nodes[static_cast<std::size_t>(node)].name, space_node(node), inertia));
+}
+
+Index Mechanism::add_turn_counter(const TurnCounter& counter) {
+  turn_counters.push_back(counter);
+  return static_cast<Index>(nodes.size()) * numbers_a_node() + static_cast<Index>(turn_counters.size()) - 1;
+}
+
+std::vector<double> Mechanism::numbers() const {
+  std::vector<double> all;
+  for (const MechanismNode& node : nodes)
+    all.insert(all.end(), node.numbers.begin(), node.numbers.begin() + numbers_a_node());
+  return all;
 }
 
 SpaceNode Mechanism::space_node(Index node) const {

@@ -4,6 +4,7 @@
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/lock.hpp>
 #include <rubato/model/joints/plane_point.hpp>
+#include <rubato/model/joints/space_coordinate.hpp>
 #include <rubato/model/joints/space_point.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
@@ -42,11 +43,36 @@ struct JointCoordinate {
   PlaneCoordinate s;
 };
 
-/// A straight line between two points of a mechanism in the plane, for pictures.
+/// Likewise in space, where a cylindrical joint and a screw have two.
+struct SpaceJointCoordinate {
+  std::string name;
+  SpaceCoordinate s;
+};
+
+/// What a joint in space does to its second part, for the results: of a distance its tension, of the others a force and
+/// a moment about the point where it holds.
+struct SpaceReaction {
+  std::size_t joint = 0;  ///< of the joints of the mechanism
+  SpacePoint at;          ///< on the second part
+  bool is_tension = false;
+};
+
+/// An angle whose whole turns are counted in the configuration: see SpaceCoordinate.
+struct TurnCounter {
+  SpacePoint first, second;
+  TurnAngle angle;
+};
+
+/// A straight line between two points that nodes carry, for pictures.
 struct DrawnLine {
   enum class Kind { beam, body, link };
+  struct End {
+    Index node = 0;
+    std::array<double, 3> offset{};  ///< in the axes of the node [m]
+    bool operator==(const End&) const = default;
+  };
   Kind kind = Kind::beam;
-  PlanePoint first, second;
+  End first, second;
 };
 
 /// Nodes, what makes forces between them and what constrains them, with values for everything. Mass is constant: bodies
@@ -59,7 +85,10 @@ struct Mechanism {
   std::vector<MassEntry> masses;
   std::vector<std::unique_ptr<Element>> elements;
   std::vector<std::unique_ptr<Joint>> joints;
-  std::vector<JointCoordinate> joint_coordinates;
+  std::vector<JointCoordinate> joint_coordinates;       ///< in the plane
+  std::vector<SpaceJointCoordinate> space_coordinates;  ///< in space
+  std::vector<SpaceReaction> reactions;                 ///< in space
+  std::vector<TurnCounter> turn_counters;
   std::vector<Lock> locks;
   std::vector<NodeForce> forces;
   Axis gravity = Axis::Zero();  ///< [m/s2]
@@ -84,7 +113,14 @@ struct Mechanism {
   /// Gives a node in space a body whose centre of mass it is: mass, inertia, and the gyroscopic moment.
   /// @param inertia  in the axes of the node [kg m2]
   void add_space_body(Index node, double mass, const numerics::Matrix3& inertia);
+  /// The inertia and the gyroscopic moment alone.
+  void add_space_inertia(Index node, const numerics::Matrix3& inertia);
   SpaceNode space_node(Index node) const;
+  /// Counts the turns of an angle. Call it when all nodes are there: their numbers come first.
+  /// @return where in q
+  Index add_turn_counter(const TurnCounter& counter);
+  /// All numbers of all nodes at the start.
+  std::vector<double> numbers() const;
   PlaneNode plane_node(Index node) const;
   /// The point of a node that lies at (x, y) of the world at the start.
   PlanePoint plane_point(Index node, double x, double y) const;

@@ -10,15 +10,29 @@
 // Bodies and the joints between them, as the user wrote it. Part of model/description.hpp.
 namespace rubato::model {
 
+/// A body of one material, from which its mass and its inertia follow.
+struct ShapeDescription {
+  enum class Kind { box, cylinder, sphere };
+  Kind kind = Kind::box;
+  std::vector<Quantity> size;              ///< of a box, along x, y and z of the body [m]
+  std::optional<Quantity> radius, length;  ///< of a cylinder along z of the body, of a sphere [m]
+  std::optional<Quantity> density;         ///< [kg/m3]; or the mass of the body
+  Location where;
+};
+
 struct BodyDescription {
   std::string name;
-  Quantity mass;                           ///< [kg]
-  std::vector<Quantity> inertia;           ///< about the centre of mass; one number in the plane [kg m2]
+  std::optional<Quantity> mass;  ///< [kg]; of a shape it may follow from the density
+  /// About the centre of mass, in the axes of the body [kg m2]: one number in the plane; in space xx, yy, zz, or these
+  /// and xy, xz, yz of the matrix. Of a shape it follows.
+  std::vector<Quantity> inertia;
+  std::optional<ShapeDescription> shape;
   std::vector<Quantity> position;          ///< of the centre of mass at the start [m]
-  std::optional<Quantity> angle;           ///< at the start [rad]; 0 unless given
+  std::optional<Quantity> angle;           ///< at the start, in the plane [rad]; 0 unless given
+  std::vector<Quantity> rotation;          ///< at the start, in space: a rotation vector [rad]; none unless given
   std::vector<Quantity> velocity;          ///< at the start [m/s]; at rest unless given
-  std::vector<Quantity> angular_velocity;  ///< at the start [rad/s]
-  Location where;
+  std::vector<Quantity> angular_velocity;  ///< at the start [rad/s]; in space about the axes of the body
+  Location where, inertia_where, rotation_where;
 };
 
 /// A limit of the coordinate of a joint.
@@ -30,7 +44,7 @@ struct LockDescription {
 };
 
 struct JointDescription {
-  enum class Type { rigid, revolute, prismatic, distance };
+  enum class Type { rigid, revolute, prismatic, distance, cylindrical, spherical, universal, planar, screw };
   std::string name;
   Type type = Type::revolute;
   std::array<std::string, 2> between;  ///< nodes, bodies or "ground"
@@ -38,8 +52,11 @@ struct JointDescription {
   std::vector<Quantity> at;  ///< its point on the first, in the configuration given [m]; that of a node unless given
   std::vector<Quantity> to;  ///< on the second; `at`, and of a distance its node, unless given
   Location at_where, to_where;
-  std::vector<Quantity> axis;  ///< of a prismatic joint [-]
+  std::vector<Quantity> axis;  ///< of a prismatic joint; in space of all but rigid, spherical and distance [-]
   Location axis_where;
+  std::vector<Quantity> second_axis;  ///< of a universal joint, on the second part [-]
+  Location second_axis_where;
+  std::optional<Quantity> lead;    ///< of a screw [m] a turn; negative: left-handed
   std::optional<Quantity> value;   ///< of its angle or displacement in the configuration given [rad] or [m]
   std::optional<Quantity> length;  ///< of a distance [m]; as the points lie unless given
   std::optional<Quantity> drive;   ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`

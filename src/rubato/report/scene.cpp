@@ -158,8 +158,9 @@ std::optional<Scene> read_scene(const AnalysisTables& analysis, const SceneExten
     if (!variable) return std::nullopt;
     scene.position[axis] = column(*nodes, *variable);
   }
-  for (const auto& [variable, values] : {std::pair{"carrier", &scene.carrier}, std::pair{"offset_x", &scene.offset_x},
-                                         std::pair{"offset_y", &scene.offset_y}})
+  for (const auto& [variable, values] :
+       {std::pair{"carrier", &scene.carrier}, std::pair{"offset_x", &scene.offset_x},
+        std::pair{"offset_y", &scene.offset_y}, std::pair{"offset_z", &scene.offset_z}})
     if (const auto found = find_variable(*nodes, variable)) *values = column(*nodes, *found);
   scene.support = words(*nodes, "support");
   scene.kinds = words(*lines, "kind");

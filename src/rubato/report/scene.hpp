@@ -17,7 +17,7 @@ struct Scene {
   std::vector<double> first, second;            ///< nodes that each line joins, [lines]
   /// Points that a node carries: its number (their own, or -1 where nothing does), and their place in its axes, [p]
   /// each [m]; empty where every node moves by itself.
-  std::vector<double> carrier, offset_x, offset_y;
+  std::vector<double> carrier, offset_x, offset_y, offset_z;
   std::vector<std::string> kinds;  ///< of the lines, or empty
   bool is_absolute = false;        ///< the values are positions instead of displacements
 

@@ -25,13 +25,13 @@ std::string scene_json(const std::optional<Scene>& scene) {
   const auto& position = scene->position;
   return fmt::format(
       R"({{"names":{},"position":[{},{},{}],"support":{},"lines":[{},{}],"kinds":{},"is_absolute":{},"carrier":{},)"
-      R"("offset":[{},{}],"places":[{},{}],)"
+      R"("offset":[{},{},{}],"places":[{},{}],)"
       R"("rows":{},"coordinate":{},"values":{},"imaginary":{}}})",
       json_strings(scene->names), json_numbers(position[0]), json_numbers(position[1]), json_numbers(position[2]),
       json_strings(scene->support), json_numbers(scene->first), json_numbers(scene->second), json_strings(scene->kinds),
       scene->is_absolute, json_numbers(scene->carrier), json_numbers(scene->offset_x), json_numbers(scene->offset_y),
-      integers_json(scene->place_node), integers_json(scene->place_axis), integers_json(scene->rows),
-      json_numbers(scene->coordinate, coordinate_digits), frames_json(scene->values),
+      json_numbers(scene->offset_z), integers_json(scene->place_node), integers_json(scene->place_axis),
+      integers_json(scene->rows), json_numbers(scene->coordinate, coordinate_digits), frames_json(scene->values),
       scene->imaginary.empty() ? "null" : frames_json(scene->imaginary));
 }
 

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/rotations.hpp>
 #include <rubato/report/json.hpp>
 #include <rubato/report/scene.hpp>
 #include <rubato/report/write_vtk.hpp>
@@ -6,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -53,8 +53,10 @@ std::string frame_of(const Scene& scene, const std::vector<double>& values, cons
   for (std::size_t node = 0; node < scene.carrier.size(); ++node) {
     if (scene.carrier[node] < 0.0 || scene.carrier[node] == static_cast<double>(node)) continue;
     const std::array<double, 6>& carrier = motion[static_cast<std::size_t>(scene.carrier[node])];
-    const double c = std::cos(carrier[5]), s = std::sin(carrier[5]), x = scene.offset_x[node], y = scene.offset_y[node];
-    motion[node] = {carrier[0] + c * x - s * y, carrier[1] + s * x + c * y, 0.0, 0.0, 0.0, carrier[5]};
+    const numerics::Vector3 turn(carrier[3], carrier[4], carrier[5]);
+    const numerics::Vector3 moved = numerics::rotation_of(turn) *
+                                    numerics::Vector3(scene.offset_x[node], scene.offset_y[node], scene.offset_z[node]);
+    motion[node] = {carrier[0] + moved[0], carrier[1] + moved[1], carrier[2] + moved[2], turn[0], turn[1], turn[2]};
   }
   std::string points, displacements, rotations;
   for (std::size_t node = 0; node < nodes; ++node) {

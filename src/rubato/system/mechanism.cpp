@@ -61,7 +61,8 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
     for (const std::string& row : joint->row_names()) rows_.push_back(joint->name() + "." + row);
 
   const Index numbers = model_.numbers_a_node();
-  start_.q.resize(static_cast<Index>(model_.nodes.size()) * numbers);
+  const Index of_nodes = static_cast<Index>(model_.nodes.size()) * numbers;
+  start_.q.resize(of_nodes + static_cast<Index>(model_.turn_counters.size()));
   start_.v = Vector::Zero(n);
   number_.assign(static_cast<std::size_t>(n), 0);
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
@@ -79,6 +80,8 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
     if (model_.dimension == 3 && turned != std::array<Index, 3>{ground, ground, ground})
       turns_.push_back({first + 3, turned});
   }
+  start_.q.tail(start_.q.size() - of_nodes).setZero();
+  count_turns(start_.q, start_.q);
   start_.slider_force.resize(0);
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
   start_.multiplier = Vector::Zero(constraint_count());
@@ -93,6 +96,17 @@ void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {
     const Rotation turned =
         (rotation_in(q, turn.quaternion) * numerics::rotation_of(part_of(dq, turn.place))).normalized();
     out.segment<4>(turn.quaternion) << turned.w(), turned.x(), turned.y(), turned.z();
+  }
+  count_turns(q, out);
+}
+
+void Mechanism::count_turns(const Vector& before, Vector& q) const {
+  Index place = q.size() - static_cast<Index>(model_.turn_counters.size());
+  model::SpaceValue angle;
+  for (const model::TurnCounter& counter : model_.turn_counters) {
+    model::evaluate(counter.angle, model::pair_of(q.data(), counter.first, counter.second), angle);
+    q[place] = model::nearest_turn(angle.value, before[place]);
+    ++place;
   }
 }
 

@@ -16,7 +16,8 @@ namespace rubato::system {
 ///
 /// with the constant mass M [n x n], forces f = internal - external, and velocities in the tangent space of the
 /// configuration. q holds all numbers of all nodes (three a node in the plane, seven in space, the ground first), those
-/// of fixed axes too. Immutable; MechanismEquations evaluates it, one a thread.
+/// of fixed axes too, and behind them the angles of joints in space whose turns are counted. Immutable;
+/// MechanismEquations evaluates it, one a thread.
 class Mechanism {
  public:
   /// Throws InvalidInput for a coordinate without mass.
@@ -49,6 +50,9 @@ class Mechanism {
   void times_mass(const Vector& x, Vector& out) const;
 
  private:
+  /// Sets the angles that are counted with their turns to those of q, by continuity from `before`.
+  void count_turns(const Vector& before, Vector& q) const;
+
   model::Mechanism model_;
   SparseMatrix mass_;
   Vector diagonal_, weight_;

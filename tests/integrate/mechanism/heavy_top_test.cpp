@@ -4,12 +4,12 @@
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/model/joints/space_joints.hpp>
 
+#include <support/heavy_top.hpp>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-// The heavy top of Geradin and Cardona (2001) with the data of Bruels and Cardona (2010): 15 kg, its centre of mass 1 m
-// along its second axis from a spherical joint to the ground, spinning at 150 rad/s about that axis.
 namespace rubato {
 namespace {
 
@@ -17,9 +17,10 @@ using numerics::Matrix3;
 using numerics::Rotation;
 using numerics::Vector3;
 
-constexpr double mass = 15.0, gravity = 9.81;
-const Vector3 arm(0.0, 1.0, 0.0), spin(0.0, 150.0, -4.61538);
-const Vector3 inertia(0.234375, 0.46875, 0.234375);
+using testing::Top;
+
+constexpr double mass = testing::top_mass, gravity = testing::top_gravity;
+const Vector3 arm = testing::top_arm, spin = testing::top_spin, inertia = testing::top_inertia;
 
 system::Mechanism heavy_top() {
   model::Mechanism top(3);
@@ -37,41 +38,6 @@ system::Mechanism heavy_top() {
                                                {{top.space_node(body), -arm}, Matrix3::Identity()}));
   return system::Mechanism(std::move(top));
 }
-
-/// Euler's equations about the foot, (J + m (1 - y y^T)) omega' + omega x (...) = y x R^T m g, by Runge-Kutta steps so
-/// short that what is left is round-off: 1e-5 (150 rad/s * 1e-5 s)^4.
-struct Top {
-  Rotation turn = Rotation::Identity();
-  Vector3 omega = spin, rate = Vector3::Zero();
-
-  Vector3 acceleration(const Rotation& at, const Vector3& w) const {
-    const Vector3 about_foot = inertia + mass * Vector3(1.0, 0.0, 1.0);
-    const Vector3 weight = at.conjugate() * Vector3(0.0, 0.0, -mass * gravity);
-    return (arm.cross(weight) - w.cross(about_foot.cwiseProduct(w))).cwiseQuotient(about_foot);
-  }
-  /// The rotation by increments of the body: R' = R omega; the vector of a short step follows v' = T(v)^-1 omega.
-  void go(double end, double h) {
-    for (long i = 0, n = std::lround(end / h); i < n; ++i) {
-      const auto slope = [&](const Vector3& v, const Vector3& w) {
-        return std::pair<Vector3, Vector3>(numerics::inverse_tangent_of(v) * w,
-                                           acceleration(turn * numerics::rotation_of(v), w));
-      };
-      const auto [v1, w1] = slope(Vector3::Zero(), omega);
-      const auto [v2, w2] = slope(0.5 * h * v1, omega + 0.5 * h * w1);
-      const auto [v3, w3] = slope(0.5 * h * v2, omega + 0.5 * h * w2);
-      const auto [v4, w4] = slope(h * v3, omega + h * w3);
-      turn = (turn * numerics::rotation_of(h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4))).normalized();
-      omega += h / 6.0 * (w1 + 2.0 * w2 + 2.0 * w3 + w4);
-    }
-    rate = acceleration(turn, omega);
-  }
-  Vector3 position() const { return turn * arm; }
-  /// The force of the joint on the foot: m (g - a).
-  Vector3 reaction() const {
-    const Vector3 a = turn * (rate.cross(arm) + omega.cross(omega.cross(arm)));
-    return mass * (Vector3(0.0, 0.0, -gravity) - a);
-  }
-};
 
 struct Errors {
   double position, turn, velocity, omega, reaction, gap;

@@ -1,184 +1,12 @@
+#include <rubato/model/joints/coordinate_law.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
-#include <rubato/numerics/bound_formula.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace rubato::model {
 namespace {
 
-constexpr int k = 6;
-
-/// A force on s: what a law says of (s, s', t), turned into forces on the nodes.
-class CoordinateLaw : public Element {
- public:
-  CoordinateLaw(std::string name, const PlaneCoordinate& s, const AtLock& when)
-      : Element(std::move(name)), s_(s), when_(when) {
-    places_ = s.places();
-  }
-
-  void force(const Motion& motion, double* force) const override {
-    std::fill(force, force + k, 0.0);
-    if (!when_.is_at_work(motion)) return;
-    double slope[k];
-    s_.slope(motion.q, slope);
-    const double applied = law(s_.value(motion.q), s_.rate(motion), motion.t);
-    for (int i = 0; i < k; ++i) force[i] = -applied * slope[i];
-  }
-
-  void tangent(const Motion& motion, double stiffness, double damping, double* force, double* tangent) const override {
-    std::fill(force, force + k, 0.0);
-    std::fill(tangent, tangent + k * k, 0.0);
-    if (!when_.is_at_work(motion)) return;
-    double slope[k], rate_slope[k], by_s = 0.0, by_rate = 0.0;
-    s_.slope(motion.q, slope);
-    const double s = s_.value(motion.q), rate = s_.rate(motion), applied = law(s, rate, motion.t);
-    law_slopes(s, rate, motion.t, by_s, by_rate);
-    if (s_.kind == PlaneCoordinate::Kind::displacement) {
-      s_.curvature(motion.q, 1.0, tangent);
-      for (int i = 0; i < k; ++i) {  // ds'/dq = curvature v
-        rate_slope[i] = 0.0;
-        for (int j = 0; j < k; ++j) rate_slope[i] += tangent[i * k + j] * motion.v[places_[std::size_t(j)]];
-      }
-      for (int i = 0; i < k * k; ++i) tangent[i] *= -stiffness * applied;
-    } else {
-      std::fill(rate_slope, rate_slope + k, 0.0);
-    }
-    for (int i = 0; i < k; ++i) {
-      force[i] = -applied * slope[i];
-      for (int j = 0; j < k; ++j)
-        tangent[i * k + j] -=
-            slope[i] * ((stiffness * by_s + damping * by_rate) * slope[j] + stiffness * by_rate * rate_slope[j]);
-    }
-  }
-
-  bool has_symmetric_tangent() const override { return s_.kind == PlaneCoordinate::Kind::angle || !depends_on_rate(); }
-
- protected:
-  virtual double law(double s, double rate, double t) const = 0;
-  virtual void law_slopes(double s, double rate, double t, double& by_s, double& by_rate) const = 0;
-  virtual bool depends_on_rate() const = 0;
-
-  PlaneCoordinate s_;
-  AtLock when_;
-};
-
-class Spring final : public CoordinateLaw {
- public:
-  Spring(std::string name, const PlaneCoordinate& s, double stiffness, double rest, const AtLock& when)
-      : CoordinateLaw(std::move(name), s, when), stiffness_(stiffness), rest_(rest) {}
-  std::unique_ptr<Element> clone() const override { return std::make_unique<Spring>(*this); }
-  double stored_energy(const Motion& motion) const override {
-    if (!when_.is_at_work(motion)) return 0.0;
-    const double stretch = s_.value(motion.q) - rest_;
-    return 0.5 * stiffness_ * stretch * stretch;
-  }
-
- private:
-  double law(double s, double, double) const override { return -stiffness_ * (s - rest_); }
-  void law_slopes(double, double, double, double& by_s, double&) const override { by_s = -stiffness_; }
-  bool depends_on_rate() const override { return false; }
-
-  double stiffness_, rest_;
-};
-
-class Damper final : public CoordinateLaw {
- public:
-  Damper(std::string name, const PlaneCoordinate& s, double damping, const AtLock& when)
-      : CoordinateLaw(std::move(name), s, when), damping_(damping) {}
-  std::unique_ptr<Element> clone() const override { return std::make_unique<Damper>(*this); }
-  Role role() const override { return Role::damper; }
-
- private:
-  double law(double, double rate, double) const override { return -damping_ * rate; }
-  void law_slopes(double, double, double, double&, double& by_rate) const override { by_rate = -damping_; }
-  bool depends_on_rate() const override { return true; }
-
-  double damping_;
-};
-
-class Drive final : public CoordinateLaw {
- public:
-  Drive(std::string name, const PlaneCoordinate& s, std::string formula, numerics::Parameters parameters,
-        const AtLock& when)
-      : CoordinateLaw(std::move(name), s, when), text_(std::move(formula)), names_(std::move(parameters)) {
-    const bool is_angle = s.kind == PlaneCoordinate::Kind::angle;
-    names_.insert(names_.begin(), {{is_angle ? "angle" : "displacement", 0.0}, {"rate", 0.0}, {"t", 0.0}});
-    for (const std::size_t i : numerics::parameters_used(text_, names_))
-      if (i < uses_.size()) uses_[i] = true;
-    bind();
-  }
-  Drive(const Drive& other) : CoordinateLaw(other), text_(other.text_), names_(other.names_), uses_(other.uses_) {
-    bind();
-  }
-  std::unique_ptr<Element> clone() const override { return std::make_unique<Drive>(*this); }
-  Role role() const override { return Role::load; }
-
- private:
-  void bind() {
-    for (const auto& name : names_) values_.push_back(name.second);
-    formula_ = std::make_unique<numerics::BoundFormula>(text_, names_, values_.data());
-    if (!uses_[0] && !uses_[1] && !uses_[2]) constant_ = (*formula_)();
-  }
-  double law(double s, double rate, double t) const override {
-    if (!uses_[0] && !uses_[1] && !uses_[2]) return constant_;
-    values_[0] = s;
-    values_[1] = rate;
-    values_[2] = t;
-    return (*formula_)();
-  }
-  // Half the digits are good enough for Newton's matrix: steps of the cube root of round-off.
-  void law_slopes(double s, double rate, double t, double& by_s, double& by_rate) const override {
-    constexpr double relative = 6e-6;
-    const double ds = relative * (1.0 + std::abs(s)), dr = relative * (1.0 + std::abs(rate));
-    if (uses_[0]) by_s = (law(s + ds, rate, t) - law(s - ds, rate, t)) / (2.0 * ds);
-    if (uses_[1]) by_rate = (law(s, rate + dr, t) - law(s, rate - dr, t)) / (2.0 * dr);
-  }
-  bool depends_on_rate() const override { return uses_[1]; }
-
-  std::string text_;
-  numerics::Parameters names_;
-  std::array<bool, 3> uses_{};  // s, rate, t
-  mutable std::vector<double> values_;
-  std::unique_ptr<numerics::BoundFormula> formula_;
-  double constant_ = 0.0;
-};
-
-class LockJoint final : public Joint {
- public:
-  LockJoint(std::string name, const PlaneCoordinate& s, double at, int lock)
-      : Joint(std::move(name)), s_(s), at_(at), lock_(lock) {
-    places_ = s.places();
-    row_names_ = {"lock"};
-  }
-  std::unique_ptr<Joint> clone() const override { return std::make_unique<LockJoint>(*this); }
-
-  void constraint(const Motion& motion, double* g, double* jacobian) const override {
-    std::fill(jacobian, jacobian + k, 0.0);
-    g[0] = 0.0;
-    if (!is_active(motion)) return;
-    g[0] = s_.value(motion.q) - at_;
-    s_.slope(motion.q, jacobian);
-  }
-  void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
-    s_.curvature(motion.q, is_active(motion) ? multiplier[0] : 0.0, curvature);
-  }
-  void second_rate(const Motion& motion, double* out) const override {
-    double h[k * k];
-    s_.curvature(motion.q, is_active(motion) ? 1.0 : 0.0, h);
-    out[0] = 0.0;
-    for (int i = 0; i < k; ++i)
-      for (int j = 0; j < k; ++j)
-        out[0] += motion.v[places_[std::size_t(i)]] * h[i * k + j] * motion.v[places_[std::size_t(j)]];
-  }
-  bool is_active(const Motion& motion) const override { return motion.phase[lock_] != 0; }
-
- private:
-  PlaneCoordinate s_;
-  double at_;
-  int lock_;
-};
+constexpr int k = PlaneCoordinate::tangent_size;
 
 }  // namespace
 
@@ -217,21 +45,21 @@ double PlaneCoordinate::rate(const Motion& motion) const {
 
 std::unique_ptr<Element> make_joint_spring(std::string name, const PlaneCoordinate& s, double stiffness, double rest,
                                            const AtLock& when) {
-  return std::make_unique<Spring>(std::move(name), s, stiffness, rest, when);
+  return std::make_unique<Spring<PlaneCoordinate>>(std::move(name), s, stiffness, rest, when);
 }
 
 std::unique_ptr<Element> make_joint_damper(std::string name, const PlaneCoordinate& s, double damping,
                                            const AtLock& when) {
-  return std::make_unique<Damper>(std::move(name), s, damping, when);
+  return std::make_unique<Damper<PlaneCoordinate>>(std::move(name), s, damping, when);
 }
 
 std::unique_ptr<Element> make_joint_drive(std::string name, const PlaneCoordinate& s, const std::string& formula,
                                           const numerics::Parameters& parameters, const AtLock& when) {
-  return std::make_unique<Drive>(std::move(name), s, formula, parameters, when);
+  return std::make_unique<Drive<PlaneCoordinate>>(std::move(name), s, formula, parameters, when);
 }
 
 std::unique_ptr<Joint> make_lock_joint(std::string name, const PlaneCoordinate& s, double at, int lock) {
-  return std::make_unique<LockJoint>(std::move(name), s, at, lock);
+  return std::make_unique<LockJoint<PlaneCoordinate>>(std::move(name), s, at, lock);
 }
 
 }  // namespace rubato::model

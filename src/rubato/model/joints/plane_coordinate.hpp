@@ -18,6 +18,11 @@ struct PlaneCoordinate {
   PlaneProjection along;  ///< of an angle only the nodes are used
   double zero = 0.0;      ///< subtracted from what the nodes say [rad] or [m]
 
+  static constexpr int tangent_size = 6;
+  static constexpr bool has_symmetric_curvature = true;
+  bool is_angle() const { return kind == Kind::angle; }
+  bool has_constant_slope() const { return is_angle(); }
+
   std::vector<Index> places() const;
   double value(const double* q) const;
   void slope(const double* q, double* slope) const;                         ///< [6]

@@ -25,6 +25,19 @@ function seen_box(scene, scale) {
 const between = (first, second, share) => first.map((value, i) => (value ?? 0) + share * ((second[i] ?? 0) - (value ?? 0)));
 
 /**
+ * Values between two frames. A rotation vector jumps where it passes half a turn: between such frames a node stays in the
+ * rotation of the nearer one, instead of spinning back.
+ */
+function between_frames(scene, first, second, share) {
+  const values = between(first, second, share), [nodes, axes] = scene.places, jumps = new Map();
+  axes.forEach((axis, place) => {
+    if (axis >= 3) jumps.set(nodes[place], Math.hypot(jumps.get(nodes[place]) ?? 0, (second[place] ?? 0) - (first[place] ?? 0)));
+  });
+  if (!is_in_space(scene)) return values;
+  return values.map((value, place) => (axes[place] >= 3 && jumps.get(nodes[place]) > Math.PI ? (share < 0.5 ? first : second)[place] : value));
+}
+
+/**
  * A player of a scene.
  *
  * moments: {count, label(at), values(at)}: what is seen at a place in [0, count - 1], which need not be whole
@@ -151,7 +164,7 @@ function motion_player(scene) {
     count: times.length,
     values: (at) => {
       const [first, second, share] = split(at);
-      return between(scene.values[first], scene.values[second], share);
+      return between_frames(scene, scene.values[first], scene.values[second], share);
     },
     label: (at) => {
       const [first, second, share] = split(at);

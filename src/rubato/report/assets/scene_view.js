@@ -2,6 +2,16 @@
 
 const scene_colors = {reference: "#b4bcc4", line: "#0b4f7c", node: "#1c242c", support: "#6c7680", trace: "#d55e00"};
 
+/** A vector turned by a rotation vector, about its direction by its length. */
+function turned_by(turn, vector) {
+  const angle = Math.hypot(...turn);
+  if (angle === 0) return vector;
+  const [x, y, z] = turn.map((component) => component / angle), [a, b, c] = vector;
+  const along = (1 - Math.cos(angle)) * (x * a + y * b + z * c), [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+  return [cos * a + sin * (y * c - z * b) + along * x, cos * b + sin * (z * a - x * c) + along * y,
+          cos * c + sin * (x * b - y * a) + along * z];
+}
+
 /** Motion of every node, six numbers each: displacements (or positions) along x, y, z and rotations about them. */
 function node_motion(scene, values) {
   const motion = new Float64Array(6 * scene.names.length);
@@ -10,12 +20,11 @@ function node_motion(scene, values) {
   }
   const [nodes, axes] = scene.places;
   values.forEach((value, place) => { motion[6 * nodes[place] + axes[place]] = value ?? 0; });
-  scene.carrier.forEach((carrier, node) => {  // points that move with a node in the plane
+  scene.carrier.forEach((carrier, node) => {  // points that move with a node
     if (carrier === node || carrier < 0) return;
-    const [c, s] = [Math.cos(motion[6 * carrier + 5]), Math.sin(motion[6 * carrier + 5])];
-    const [x, y] = [scene.offset[0][node], scene.offset[1][node]];
-    motion[6 * node] = motion[6 * carrier] + c * x - s * y;
-    motion[6 * node + 1] = motion[6 * carrier + 1] + s * x + c * y;
+    const turn = [3, 4, 5].map((i) => motion[6 * carrier + i]);
+    const moved = turned_by(turn, scene.offset.map((axis) => axis[node] ?? 0));
+    moved.forEach((x, i) => { motion[6 * node + i] = motion[6 * carrier + i] + x; });
   });
   return motion;
 }

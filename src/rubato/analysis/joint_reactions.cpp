@@ -1,0 +1,94 @@
+#include <rubato/analysis/joint_reactions.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace rubato::analysis {
+namespace {
+
+/// Of a reaction in space.
+constexpr std::array<const char*, 6> components{"x", "y", "z", "moment_x", "moment_y", "moment_z"};
+
+}  // namespace
+
+JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(mechanism) {
+  Index row = 0;
+  for (const auto& joint : mechanism.model().joints) {
+    first_row_.push_back(row);
+    for (const std::string& name : joint->row_names()) {
+      auto found = std::find_if(plane_.begin(), plane_.end(), [&](const Plane& r) { return r.name == name; });
+      if (found == plane_.end()) found = plane_.insert(found, Plane{name, {}, {}, name == "tension" ? 1.0 : -1.0});
+      found->joints.push_back(joint->name());
+      found->rows.push_back(row++);
+    }
+  }
+}
+
+void JointReactions::add(results::TableLayout& layout) const {
+  if (mechanism_.model().dimension == 3) return add_space(layout);
+  for (const Plane& reaction : plane_)
+    layout.blocks.push_back(
+        {"reaction_" + reaction.name, reaction.name == "moment" ? "N m" : "N",
+         reaction.name == "tension" ? "tension of each link" : "what each joint does to its second part",
+         "reaction_" + reaction.name + "_joint", reaction.joints});
+}
+
+void JointReactions::add_space(results::TableLayout& layout) const {
+  std::vector<std::string> joints, links;
+  for (const auto& reaction : mechanism_.model().reactions)
+    (reaction.is_tension ? links : joints).push_back(mechanism_.model().joints[reaction.joint]->name());
+  for (std::size_t i = 0; i < components.size() && !joints.empty(); ++i)
+    layout.blocks.push_back({std::string("reaction_") + components[i], i < 3 ? "N" : "N m",
+                             i < 3
+                                 ? "force of each joint on its second part, by the axes of the world"
+                                 : "moment of each joint on its second part about its point, by the axes of the world",
+                             "reaction_joint", joints});
+  if (!links.empty())
+    layout.blocks.push_back({"reaction_tension", "N", "tension of each link", "reaction_tension_joint", links});
+}
+
+void JointReactions::append(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {
+  if (mechanism_.model().dimension == 3) return append_space(motion, multiplier, row);
+  for (const Plane& reaction : plane_)
+    for (const Index i : reaction.rows) row.push_back(reaction.sign * multiplier[i]);
+}
+
+void JointReactions::append_space(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {
+  std::vector<std::array<double, 6>> wrenches;
+  std::vector<double> tensions;
+  for (const model::SpaceReaction& reaction : mechanism_.model().reactions) {
+    const Index first = first_row_[reaction.joint];
+    if (reaction.is_tension)
+      tensions.push_back(multiplier[first]);
+    else
+      wrenches.push_back(wrench(reaction, first, motion, multiplier));
+  }
+  for (std::size_t i = 0; i < components.size(); ++i)
+    for (const auto& one : wrenches) row.push_back(one[i]);
+  row.insert(row.end(), tensions.begin(), tensions.end());
+}
+
+std::array<double, 6> JointReactions::wrench(const model::SpaceReaction& reaction, Index first_row,
+                                             const model::Motion& motion, const Vector& multiplier) {
+  constexpr std::size_t width = 12, of_second = 6;
+  const auto& joint = *mechanism_.model().joints[reaction.joint];
+  const auto rows = static_cast<std::size_t>(joint.rows());
+  constraint_.resize(rows);
+  jacobian_.resize(width * rows);
+  joint.constraint(motion, constraint_.data(), jacobian_.data());
+  numerics::Vector3 force = numerics::Vector3::Zero(), moment = force;
+  for (std::size_t r = 0; r < rows; ++r) {
+    const double value = multiplier[first_row + static_cast<Index>(r)];
+    const double* const second = jacobian_.data() + width * r + of_second;
+    for (Index i = 0; i < 3; ++i) {
+      force[i] -= value * second[i];
+      moment[i] -= value * second[i + 3];
+    }
+  }
+  // The rows tell the moment about the node, by its axes.
+  const auto turn = reaction.at.node.rotation(motion.q);
+  moment = turn * moment - (turn * reaction.at.offset).cross(force);
+  return {force[0], force[1], force[2], moment[0], moment[1], moment[2]};
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <rubato/results/sink.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// The reactions of the joints of a mechanism as columns of results: what a joint does to its second part (to its first
+/// the opposite); a tension pulls. In the plane they are its multipliers, by the names of their rows; in space a force
+/// and a moment about the point where the joint holds its second part, by the axes of the world.
+class JointReactions {
+ public:
+  explicit JointReactions(const system::Mechanism& mechanism);
+
+  void add(results::TableLayout& layout) const;
+  /// Appends the values, in the order of `add`.
+  void append(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row);
+
+ private:
+  /// Rows of constraints that bear one name, "x" or "moment".
+  struct Plane {
+    std::string name;
+    std::vector<std::string> joints;
+    std::vector<Index> rows;
+    double sign = -1.0;
+  };
+  void add_space(results::TableLayout& layout) const;
+  void append_space(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row);
+  /// Force and moment of a joint in space on its second part.
+  std::array<double, 6> wrench(const model::SpaceReaction& reaction, Index first_row, const model::Motion& motion,
+                               const Vector& multiplier);
+
+  const system::Mechanism& mechanism_;
+  std::vector<Plane> plane_;
+  std::vector<Index> first_row_;  // of each joint
+  std::vector<double> constraint_, jacobian_;
+};
+
+}  // namespace rubato::analysis

@@ -1,0 +1,97 @@
+#include <rubato/analysis/joint_coordinates.hpp>
+#include <rubato/analysis/joint_reactions.hpp>
+#include <rubato/analysis/mechanism_equilibrium.hpp>
+#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/analysis/observed_blocks.hpp>
+#include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::analysis {
+
+std::string MechanismStatic::complaint(const system::Mechanism& mechanism) const {
+  if (beyond_lock >= 0)
+    return fmt::format("the equilibrium lies beyond the lock of \"{}\"; let a transient come to rest there",
+                       mechanism.model().locks[static_cast<std::size_t>(beyond_lock)].name);
+  if (is_found) return {};
+  const std::string left =
+      worst < 0 ? std::string()
+                : fmt::format(": {:.4g} {} is left on \"{}\"", residual,
+                              mechanism.model().is_rotation[static_cast<std::size_t>(worst)] != 0 ? "N m" : "N",
+                              mechanism.coordinates()[static_cast<std::size_t>(worst)]);
+  return fmt::format(
+      "no equilibrium was found in {} iterations{}; look for a motion that nothing resists, or begin "
+      "nearer to it",
+      iterations, left);
+}
+
+MechanismStatic equilibrium_near(const system::State& start, const system::Mechanism& mechanism) {
+  system::MechanismEquations equations(mechanism);
+  integrate::MechanismEquilibrium found = integrate::find_equilibrium(equations, start);
+  MechanismStatic result;
+  result.state = std::move(found.state);
+  result.is_found = found.is_found;
+  result.is_stable = found.is_stable;
+  result.iterations = found.iterations;
+  result.residual = found.residual;
+  result.worst = found.worst;
+  const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i)
+    if (locks[i].sign * (locks[i].s.value(result.state.q.data()) - locks[i].at) > 0.0)
+      result.beyond_lock = static_cast<int>(i);
+  return result;
+}
+
+void refuse_displacements(const std::string& title, const model::StaticDescription& description) {
+  if (!description.displacements) return;
+  const Location where = description.displacements->empty() ? Location{} : description.displacements->front().where;
+  throw InvalidInput(where, title + "displacements are held in structures; a mechanism is held by its joints");
+}
+
+void check_mechanism_static(const std::string& name, const Location& where, const model::StaticDescription& description,
+                            const system::Mechanism& mechanism) {
+  refuse_displacements("analysis \"" + name + "\": ", description);
+  std::vector<std::string> warnings;
+  (void)assembled_start(where, mechanism, warnings);
+  (void)observed_or_all(description.observe, mechanism);
+}
+
+RunReport run_mechanism_static(const std::string& name, const Location& where,
+                               const model::StaticDescription& description, const system::Mechanism& mechanism,
+                               RunContext& context) {
+  check_mechanism_static(name, where, description, mechanism);
+  RunReport report;
+  const system::State start = assembled_start(where, mechanism, report.warnings);
+  const MechanismStatic found = equilibrium_near(start, mechanism);
+  JointCoordinates joints(mechanism);
+  JointReactions reactions(mechanism);
+  const ObservedBlocks observed(joints.with_angles(observed_or_all(description.observe, mechanism)));
+  results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
+  observed.add(layout, {ObservedBlocks::Quantity::position});
+  joints.add_displacements(layout);
+  reactions.add(layout);
+  joints.go_to(found.state);
+  Vector positions;
+  joints.positions(positions);
+  std::vector<double> row{0.0};
+  observed.append({&positions}, row);
+  joints.append_displacements(row);
+  reactions.append(joints.motion(), found.state.multiplier, row);
+  if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
+    context.sink.open(layout)->append(row);
+  report.statistics = {{"iterations", std::to_string(found.iterations)},
+                       {"residual", fmt::format("{:.2e}", found.residual)},
+                       {"stable", found.is_stable ? "yes" : "no"}};
+  report.message = found.complaint(mechanism);
+  if (!report.message.empty()) {
+    report.status = RunStatus::failed;
+  } else if (!found.is_stable) {
+    report.findings.push_back("the equilibrium is not stable: a motion that the joints leave goes downhill from it");
+  }
+  return report;
+}
+
+}  // namespace rubato::analysis

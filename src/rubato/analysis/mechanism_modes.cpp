@@ -1,0 +1,94 @@
+#include <rubato/analysis/mechanism_equilibrium.hpp>
+#include <rubato/analysis/mechanism_modes.hpp>
+#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/integrate/mechanism/mechanism_modes.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::analysis {
+namespace {
+
+constexpr Index default_count = 20, largest = 3000;
+
+/// The configuration given, held still; that its loads would move it is told.
+system::State at_rest(const system::State& start, const system::Mechanism& mechanism,
+                      std::vector<std::string>& warnings) {
+  system::State state = start;
+  state.v.setZero();
+  system::MechanismEquations equations(mechanism);
+  if (!integrate::find_acceleration(equations, state, model::Side::right)) return start;
+  Vector force(mechanism.size()), gap(mechanism.constraint_count()), product(mechanism.size());
+  equations.go_to(state, model::Side::right);
+  equations.residual(force, gap);
+  mechanism.times_mass(state.acceleration, product);
+  constexpr double share = 1e-6, round_off = 1e-9;
+  Index place = 0;
+  const double most = state.acceleration.size() > 0 ? state.acceleration.cwiseAbs().maxCoeff(&place) : 0.0;
+  if (product.norm() > share * force.norm() && most > round_off)
+    warnings.push_back(
+        fmt::format("the configuration is no equilibrium: \"{}\" accelerates by {:.4g}; about = \"static\" "
+                    "finds one",
+                    mechanism.coordinates()[static_cast<std::size_t>(place)], most));
+  return state;
+}
+
+}  // namespace
+
+MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location& where,
+                                        const model::ModesDescription& description, const system::Mechanism& mechanism,
+                                        const numerics::Parameters& parameters) {
+  const std::string title = "analysis \"" + name + "\": ";
+  if (mechanism.size() > largest)
+    throw InvalidInput(where, fmt::format("{}modes of a mechanism are found for up to {} coordinates, and it has {}; "
+                                          "divide its beams into fewer elements",
+                                          title, largest, mechanism.size()));
+  MechanismModesPlan plan;
+  if (description.count) {
+    const Location& place = description.count->where.line > 0 ? description.count->where : where;
+    const double count = model::evaluate(*description.count, parameters, title + "count");
+    if (!(count >= 1.0) || count != std::floor(count) || !(count <= static_cast<double>(largest)))
+      throw InvalidInput(place,
+                         fmt::format("{}count must be a whole number from 1 to {}, got {}", title, largest, count));
+    plan.modes.count = static_cast<Index>(count);
+  }
+  plan.modes.observed = observed_or_all(description.observe, mechanism);
+  plan.state = assembled_start(where, mechanism, plan.warnings);
+  if (!description.about_equilibrium) {
+    plan.state = at_rest(plan.state, mechanism, plan.warnings);
+    return plan;
+  }
+  MechanismStatic found = equilibrium_near(plan.state, mechanism);
+  if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
+    throw InvalidInput(*description.about_equilibrium, title + complaint);
+  plan.state = std::move(found.state);
+  return plan;
+}
+
+RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan& plan,
+                              const system::Mechanism& mechanism, RunContext& context) {
+  system::MechanismEquations equations(mechanism);
+  const Index count = plan.modes.count > 0 ? plan.modes.count : default_count;
+  const integrate::MechanismModes modes = integrate::modes_about(equations, plan.state, count);
+  RunReport report;
+  report.warnings = plan.warnings;
+  report.statistics = {{"freedoms", std::to_string(modes.freedoms)},
+                       {"residual_free", fmt::format("{:.1e}", modes.found.residual)}};
+  write_modes(name, plan.modes.observed, {{0, modes.found}}, context.sink);
+  if (modes.freedoms == 0)
+    report.message = "the joints leave no motion";
+  else if (!modes.is_stable)
+    report.message =
+        "the configuration is not stable: a motion that the joints leave goes downhill from it, and has no "
+        "frequency; about = \"static\" leads to one that is";
+  else if (plan.modes.count > modes.freedoms)
+    report.message =
+        fmt::format("{} modes were asked for, and the joints leave {} motions", plan.modes.count, modes.freedoms);
+  if (!report.message.empty()) report.status = RunStatus::failed;
+  return report;
+}
+
+}  // namespace rubato::analysis

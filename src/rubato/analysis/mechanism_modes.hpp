@@ -1,0 +1,30 @@
+#pragma once
+
+#include <rubato/analysis/modes.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// Natural modes of a mechanism about its start, or about its static equilibrium.
+struct MechanismModesPlan {
+  ModesPlan modes;      ///< a count of 0: all, at most 20
+  system::State state;  ///< at rest, with the multipliers of its loads
+  std::vector<std::string> warnings;
+};
+
+/// Evaluates a description and finds the configuration. Throws InvalidInput, at its place, for a mechanism that cannot
+/// be assembled, an equilibrium that is not found, a count that is no whole number of at least 1, and a mechanism too
+/// large for its dense eigenproblem (3,000 coordinates).
+MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location& where,
+                                        const model::ModesDescription& description, const system::Mechanism& mechanism,
+                                        const numerics::Parameters& parameters);
+
+/// The table of run_modes, with the limit `free`; rotations in space are about the axes of the nodes. A configuration
+/// that is not stable is a failure.
+RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan& plan,
+                              const system::Mechanism& mechanism, RunContext& context);
+
+}  // namespace rubato::analysis

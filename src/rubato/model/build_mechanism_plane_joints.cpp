@@ -1,0 +1,113 @@
+#include <rubato/model/joints/plane_joints.hpp>
+#include <rubato/model/mechanism_joint_laws.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rubato::model {
+namespace {
+
+/// A body reaches from its centre of mass to its joints.
+void draw(Mechanism& mechanism, const PlanePoint& point) {
+  const Index node = point.node.q / plane_numbers;
+  if (node == 0 || (point.offset[0] == 0.0 && point.offset[1] == 0.0)) return;
+  mechanism.lines.push_back({DrawnLine::Kind::body, {node, {}}, {node, {point.offset[0], point.offset[1], 0.0}}});
+}
+
+DrawnLine::End end_of(const PlanePoint& point) {
+  return {point.node.q / plane_numbers, {point.offset[0], point.offset[1], 0.0}};
+}
+
+/// In the axes of the first node, of length 1.
+std::array<double, 2> axis_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                              Index first) {
+  const Axis axis = assembly.direction(joint.axis, joint.axis_where, part, "axis");
+  const double turn = assembly.mechanism.nodes[static_cast<std::size_t>(first)].numbers[2];
+  const double c = std::cos(turn), s = std::sin(turn);
+  return {c * axis[0] + s * axis[1], -s * axis[0] + c * axis[1]};
+}
+
+Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+             const PlaneCoordinate& s, double value) {
+  const LockDescription& given = *joint.lock;
+  const bool is_angle = s.is_angle();
+  Lock lock;
+  lock.name = joint.name;
+  lock.s = s;
+  lock.is_latch = given.is_latch;
+  lock.at = is_angle ? assembly.angle(given.at, part + ": lock: at") : assembly.number(given.at, part + ": lock: at");
+  if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
+  if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
+  if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
+    throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
+                                                "comes by another {}",
+                                                part, lock.at, is_angle ? "angle" : "displacement"));
+  lock.sign = lock.at > value ? 1.0 : -1.0;
+  return lock;
+}
+
+/// The law, the spring, the damper and the lock on what a joint leaves free.
+void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                     PlaneCoordinate s) {
+  Mechanism& mechanism = assembly.mechanism;
+  const double value = start_value(assembly, joint, part, s.is_angle());
+  s.zero = s.value(assembly.start.data()) - value;
+  mechanism.joint_coordinates.push_back({joint.name, s});
+  AtLock drive;
+  if (joint.lock) {
+    const Lock lock = lock_of(assembly, joint, part, s, value);
+    const int index = mechanism.add_lock(lock);
+    if (lock.is_latch) drive = {index, false};
+  }
+  take_laws(assembly, joint, part, s, value, drive);
+}
+
+}  // namespace
+
+void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint) {
+  using Type = JointDescription::Type;
+  const std::string part = fmt::format("joint \"{}\"", joint.name);
+  const JointPlaces places = take_places(assembly, joint, part);
+  Mechanism& mechanism = assembly.mechanism;
+  const PlanePoint a = mechanism.plane_point(places.node[0], places.at[0][0], places.at[0][1]);
+  const PlanePoint b = mechanism.plane_point(places.node[1], places.at[1][0], places.at[1][1]);
+  draw(mechanism, a);
+  draw(mechanism, b);
+  const double relative = mechanism.nodes[static_cast<std::size_t>(places.node[1])].numbers[2] -
+                          mechanism.nodes[static_cast<std::size_t>(places.node[0])].numbers[2];
+  PlaneCoordinate s;
+  s.along = {a, b, {1.0, 0.0}};
+  switch (joint.type) {
+    case Type::rigid:
+      mechanism.joints.push_back(make_plane_rigid(joint.name, a, b, relative));
+      return;
+    case Type::distance:
+      mechanism.lines.push_back({DrawnLine::Kind::link, end_of(a), end_of(b)});
+      mechanism.joints.push_back(make_plane_distance(joint.name, a, b, length_of(assembly, joint, part, places)));
+      ++assembly.elements;
+      return;
+    case Type::revolute:
+      if (!joint.axis.empty())
+        throw InvalidInput(joint.axis_where, part + ": a revolute joint in the plane turns about z; remove \"axis\"");
+      mechanism.joints.push_back(make_plane_revolute(joint.name, a, b));
+      break;
+    case Type::prismatic:
+      require_axis(joint, part);
+      s.kind = PlaneCoordinate::Kind::displacement;
+      s.along.direction = axis_of(assembly, joint, part, places.node[0]);
+      mechanism.joints.push_back(make_plane_prismatic(joint.name, a, b, s.along.direction, relative));
+      break;
+    case Type::cylindrical:
+    case Type::spherical:
+    case Type::universal:
+    case Type::planar:
+    case Type::screw:
+      throw InvalidInput(joint.where, fmt::format("{}: its type is for mechanisms in space, and this one lies in the "
+                                                  "plane; give positions three numbers",
+                                                  part));
+  }
+  take_coordinate(assembly, joint, part, s);
+}
+
+}  // namespace rubato::model

@@ -1,0 +1,186 @@
+#include <rubato/model/joints/space_coordinate.hpp>
+#include <rubato/model/joints/space_joints.hpp>
+#include <rubato/model/mechanism_joint_laws.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::model {
+namespace {
+
+using Type = JointDescription::Type;
+using numerics::Matrix3;
+
+/// The joint on its way: its frames, which are the same in the world in the configuration given.
+struct SpaceJointPlaces {
+  std::string part;
+  JointPlaces places;
+  SpaceFrame first, second;
+};
+
+/// Whether the axes of a node can turn, or are held.
+bool has_axes(const MechanismAssembly& assembly, Index node) {
+  const MechanismNode& n = assembly.mechanism.nodes[static_cast<std::size_t>(node)];
+  if (node == 0) return true;
+  for (std::size_t axis = 3; axis < 6; ++axis)
+    if (n.place[axis] == ground && assembly.fixed.count(n.name + "." + axis_names[axis]) == 0) return false;
+  return true;
+}
+
+/// A node that does not turn has no axes with which a joint could do more than hold its place.
+void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
+  const bool holds_points_only = joint.type == Type::spherical || joint.type == Type::distance;
+  for (std::size_t end = 0; end < 2; ++end) {
+    const Index node = built.places.node[end];
+    if (has_axes(assembly, node)) continue;
+    const bool is_at_node = built.places.at[end] == assembly.position(node);
+    if (holds_points_only && is_at_node) continue;
+    throw InvalidInput(joint.between_where[end],
+                       fmt::format("{} joins \"{}\", a mass that does not turn, by more than its place; give its "
+                                   "[[mass]] \"inertia\", or take a spherical or distance joint at the node itself",
+                                   built.part, joint.between[end]));
+  }
+}
+
+SpaceFrame frame_with(const SpaceNode& node, const double* q, const Axis& at, const Matrix3& axes) {
+  SpaceFrame frame = frame_at(node, q, at, Axis::UnitZ());
+  frame.axes = node.rotation(q).toRotationMatrix().transpose() * axes;
+  return frame;
+}
+
+/// x along the axis that belongs to the first part, y along that of the second.
+Matrix3 axes_of_universal(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
+  require_axis(joint, part);
+  const Axis x = assembly.direction(joint.axis, joint.axis_where, part, "axis");
+  if (joint.second_axis.empty())
+    throw InvalidInput(joint.where, part +
+                                        " lacks the key \"second_axis\": the axis that belongs to its second part, "
+                                        "at a right angle to \"axis\"");
+  const Axis y = assembly.direction(joint.second_axis, joint.second_axis_where, part, "second_axis");
+  if (!(std::abs(x.dot(y)) <= 1e-6))
+    throw InvalidInput(joint.second_axis_where,
+                       fmt::format("{}: the axes of a universal joint are at a right angle in the configuration given; "
+                                   "these are at {:.4g} rad",
+                                   part, std::acos(std::clamp(x.dot(y), -1.0, 1.0))));
+  Matrix3 axes;
+  const Axis z = x.cross(y).normalized();
+  axes << x, z.cross(x), z;
+  return axes;
+}
+
+/// A body reaches from its centre of mass to its joints.
+DrawnLine::End draw(Mechanism& mechanism, const SpacePoint& point) {
+  const Index node = point.node.q / space_numbers;
+  const DrawnLine::End end{node, {point.offset[0], point.offset[1], point.offset[2]}};
+  if (node != 0 && point.offset != Axis::Zero()) mechanism.lines.push_back({DrawnLine::Kind::body, {node, {}}, end});
+  return end;
+}
+
+SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& first, const SpaceFrame& second) {
+  const TurnAngle angle = turn_of(first, second);
+  const Index counter = assembly.mechanism.add_turn_counter({first.point, second.point, angle});
+  assembly.start.push_back(0.0);
+  return {SpaceCoordinate::Kind::angle, first.point, second.point, angle, counter, 0.0};
+}
+
+SpaceCoordinate way_between(const SpaceFrame& first, const SpaceFrame& second) {
+  return {SpaceCoordinate::Kind::displacement, first.point, second.point, BodyGap{first.axes.col(2)}, -1, 0.0};
+}
+
+/// Adds a coordinate to the results, with the laws of the joint where they are its own.
+void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built,
+                     SpaceCoordinate s, bool has_laws) {
+  Mechanism& mechanism = assembly.mechanism;
+  const double value = has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
+  s.zero = s.value(assembly.start.data()) - value;
+  mechanism.space_coordinates.push_back({joint.name, s});
+  if (has_laws) take_laws(assembly, joint, built.part, s, value);
+}
+
+double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
+  if (!joint.lead) throw InvalidInput(joint.where, part + " lacks the key \"lead\": how far it goes in a turn [m]");
+  const double lead = assembly.number(*joint.lead, part + ": lead");
+  if (!(std::abs(lead) > 0.0))
+    throw InvalidInput(joint.lead->where, part + ": a screw of lead 0 does not advance; take a revolute joint");
+  if (!joint.to.empty())
+    throw InvalidInput(joint.to_where, part + ": a screw is given in the place where it begins to turn; remove \"to\"");
+  return lead;
+}
+
+SpaceJointKind kind_of(Type type) {
+  switch (type) {
+    case Type::revolute:
+      return SpaceJointKind::revolute;
+    case Type::prismatic:
+      return SpaceJointKind::prismatic;
+    case Type::cylindrical:
+      return SpaceJointKind::cylindrical;
+    case Type::spherical:
+      return SpaceJointKind::spherical;
+    case Type::universal:
+      return SpaceJointKind::universal;
+    case Type::planar:
+      return SpaceJointKind::planar;
+    case Type::rigid:
+    case Type::distance:
+    case Type::screw:
+      break;
+  }
+  return SpaceJointKind::rigid;
+}
+
+SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& joint) {
+  SpaceJointPlaces built;
+  built.part = fmt::format("joint \"{}\"", joint.name);
+  built.places = take_places(assembly, joint, built.part);
+  require_axes(assembly, joint, built);
+  const bool has_no_axis = joint.type == Type::rigid || joint.type == Type::spherical || joint.type == Type::distance;
+  Matrix3 axes = Matrix3::Identity();
+  const std::vector<double>& q = assembly.start;
+  if (joint.type == Type::universal) {
+    axes = axes_of_universal(assembly, joint, built.part);
+  } else if (!has_no_axis) {
+    require_axis(joint, built.part);
+    axes = frame_at(assembly.mechanism.space_node(0), q.data(), Axis::Zero(),
+                    assembly.direction(joint.axis, joint.axis_where, built.part, "axis"))
+               .axes;
+  }
+  const auto& [first, second] = built.places.node;
+  built.first = frame_with(assembly.mechanism.space_node(first), q.data(), built.places.at[0], axes);
+  built.second = frame_with(assembly.mechanism.space_node(second), q.data(), built.places.at[1], axes);
+  return built;
+}
+
+}  // namespace
+
+void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint) {
+  const SpaceJointPlaces built = places_of(assembly, joint);
+  const auto& [part, places, first, second] = built;
+  if (joint.lock)
+    throw InvalidInput(joint.lock->where, part +
+                                              ": locks are for mechanisms in the plane; in space give a law that "
+                                              "grows stiff, as moment = \"-1e5*max(angle - 1, 0)\"");
+  Mechanism& mechanism = assembly.mechanism;
+  const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
+  mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});
+  if (joint.type == Type::distance) {
+    mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
+    mechanism.joints.push_back(
+        make_space_distance(joint.name, first.point, second.point, length_of(assembly, joint, part, places)));
+    ++assembly.elements;
+    return;
+  }
+  if (joint.type == Type::screw)
+    mechanism.joints.push_back(make_space_screw(joint.name, first, second, lead_of(assembly, joint, part)));
+  else
+    mechanism.joints.push_back(make_space_joint(kind_of(joint.type), joint.name, first, second));
+  const bool turns = joint.type == Type::revolute || joint.type == Type::cylindrical || joint.type == Type::screw;
+  const bool slides = joint.type == Type::prismatic || joint.type == Type::cylindrical || joint.type == Type::screw;
+  if (turns)
+    take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical);
+  if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic);
+}
+
+}  // namespace rubato::model

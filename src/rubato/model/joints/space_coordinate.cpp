@@ -1,0 +1,84 @@
+#include <rubato/model/joints/coordinate_law.hpp>
+#include <rubato/model/joints/space_coordinate.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace rubato::model {
+namespace {
+
+constexpr int k = SpaceCoordinate::tangent_size;
+
+SpaceValue value_of(const SpaceCoordinate& s, const double* q) {
+  SpaceValue value;
+  evaluate(s.row, pair_of(q, s.first, s.second), value);
+  return value;
+}
+
+Vector12 part_of(const SpaceCoordinate& s, const double* of_coordinates) {
+  Vector12 part;
+  for (Index i = 0; i < 6; ++i) {
+    part[i] = of_coordinates[s.first.node.place[static_cast<std::size_t>(i)]];
+    part[i + 6] = of_coordinates[s.second.node.place[static_cast<std::size_t>(i)]];
+  }
+  return part;
+}
+
+}  // namespace
+
+std::vector<Index> SpaceCoordinate::places() const {
+  std::vector<Index> places(first.node.place.begin(), first.node.place.end());
+  places.insert(places.end(), second.node.place.begin(), second.node.place.end());
+  return places;
+}
+
+double SpaceCoordinate::value(const double* q) const {
+  const double now = value_of(*this, q).value;
+  return (counter < 0 ? now : nearest_turn(now, q[counter])) - zero;
+}
+
+void SpaceCoordinate::slope(const double* q, double* slope) const {
+  Eigen::Map<Vector12> out(slope);
+  out = value_of(*this, q).gradient;
+}
+
+void SpaceCoordinate::curvature(const double* q, double weight, double* curvature) const {
+  Eigen::Map<Eigen::Matrix<double, k, k, Eigen::RowMajor>> out(curvature);
+  out = weight * value_of(*this, q).slope;
+}
+
+double SpaceCoordinate::rate(const Motion& motion) const {
+  return value_of(*this, motion.q).gradient.dot(part_of(*this, motion.v));
+}
+
+double SpaceCoordinate::second_rate(const Motion& motion, const double* acceleration) const {
+  const SpaceValue now = value_of(*this, motion.q);
+  const Vector12 v = part_of(*this, motion.v);
+  return now.gradient.dot(part_of(*this, acceleration)) + v.dot(now.slope * v);
+}
+
+TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second) {
+  return {first.axes.col(0), first.axes.col(1), second.axes.col(0)};
+}
+
+double nearest_turn(double angle, double known) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  return angle + turn * std::round((known - angle) / turn);
+}
+
+std::unique_ptr<Element> make_joint_spring(std::string name, const SpaceCoordinate& s, double stiffness, double rest,
+                                           const AtLock& when) {
+  return std::make_unique<Spring<SpaceCoordinate>>(std::move(name), s, stiffness, rest, when);
+}
+
+std::unique_ptr<Element> make_joint_damper(std::string name, const SpaceCoordinate& s, double damping,
+                                           const AtLock& when) {
+  return std::make_unique<Damper<SpaceCoordinate>>(std::move(name), s, damping, when);
+}
+
+std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinate& s, const std::string& formula,
+                                          const numerics::Parameters& parameters, const AtLock& when) {
+  return std::make_unique<Drive<SpaceCoordinate>>(std::move(name), s, formula, parameters, when);
+}
+
+}  // namespace rubato::model

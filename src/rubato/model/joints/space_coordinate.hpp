@@ -1,0 +1,55 @@
+#pragma once
+
+#include <rubato/model/joints/plane_coordinate.hpp>
+#include <rubato/model/joints/space_joints.hpp>
+#include <rubato/model/joints/space_rows.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::model {
+
+/// The coordinate s that a joint in space leaves free: the angle by which the second part has turned about the axis, or
+/// the way along it. Derivatives are by the increments of both nodes, rotations in body axes.
+///
+/// A rotation says its angle up to whole turns only. The turns are counted in the configuration: behind the numbers of
+/// the nodes stands, for each angle, the angle with all its turns, which retract() carries on by continuity. A step
+/// must not turn a joint by pi or more.
+struct SpaceCoordinate {
+  enum class Kind { angle, displacement };
+  static constexpr int tangent_size = 12;
+  static constexpr bool has_symmetric_curvature = false;
+
+  Kind kind = Kind::angle;
+  SpacePoint first, second;
+  SpaceRow row;        ///< a TurnAngle, or a BodyGap
+  Index counter = -1;  ///< of an angle: where in q its turns are counted
+  double zero = 0.0;   ///< subtracted from what the nodes say [rad] or [m]
+
+  bool is_angle() const { return kind == Kind::angle; }
+  bool has_constant_slope() const { return false; }
+  std::vector<Index> places() const;
+  double value(const double* q) const;
+  void slope(const double* q, double* slope) const;                         ///< [12]
+  void curvature(const double* q, double weight, double* curvature) const;  ///< [12 x 12]
+  double rate(const Motion& motion) const;                                  ///< [rad/s] or [m/s]
+  /// s'' for given accelerations.
+  /// @param acceleration  [n], after a zero, as the velocities of a Motion
+  double second_rate(const Motion& motion, const double* acceleration) const;
+};
+
+/// The angle about the third axis of two frames, as SpaceCoordinate counts it before `zero`.
+TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second);
+
+/// The angle that lies nearest to one that is known: angle + 2 pi k.
+double nearest_turn(double angle, double known);
+
+std::unique_ptr<Element> make_joint_spring(std::string name, const SpaceCoordinate& s, double stiffness, double rest,
+                                           const AtLock& when = {});
+std::unique_ptr<Element> make_joint_damper(std::string name, const SpaceCoordinate& s, double damping,
+                                           const AtLock& when = {});
+std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinate& s, const std::string& formula,
+                                          const numerics::Parameters& parameters, const AtLock& when = {});
+
+}  // namespace rubato::model

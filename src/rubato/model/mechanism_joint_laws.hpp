@@ -1,0 +1,50 @@
+#pragma once
+
+#include <rubato/model/mechanism_assembly.hpp>
+
+#include <fmt/format.h>
+
+// Private to the model floor: what a joint does to the coordinate that it leaves free, in the plane and in space alike.
+namespace rubato::model {
+
+/// The angle or displacement that a joint has in the configuration given.
+inline double start_value(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                          bool is_angle) {
+  if (!joint.value) return 0.0;
+  return is_angle ? assembly.angle(*joint.value, part + ": angle")
+                  : assembly.number(*joint.value, part + ": displacement");
+}
+
+/// Throws InvalidInput for a joint without an axis that needs one.
+inline void require_axis(const JointDescription& joint, const std::string& part) {
+  if (joint.axis.empty()) throw InvalidInput(joint.where, fmt::format("{} lacks the key \"axis\"", part));
+}
+
+/// The law of a moment or force, the spring and the damper.
+/// @param s      with its zero
+/// @param value  of s in the configuration given
+/// @param when   the phase of a lock in which the law is at work
+template <class Coordinate>
+void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part, const Coordinate& s,
+               double value, const AtLock& when = {}) {
+  auto& elements = assembly.mechanism.elements;
+  if (joint.drive) {
+    const std::string text =
+        joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;
+    try {
+      elements.push_back(make_joint_drive(joint.name, s, text, assembly.parameters, when));
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(joint.drive->where,
+                         fmt::format("{}: {}: {}", part, s.is_angle() ? "moment" : "force", fault.message()));
+    }
+  }
+  if (joint.stiffness) {
+    const double rest = joint.rest ? assembly.number(*joint.rest, part + ": rest") : value;
+    elements.push_back(
+        make_joint_spring(joint.name, s, assembly.at_least_zero(*joint.stiffness, part + ": stiffness"), rest));
+  }
+  if (joint.damping)
+    elements.push_back(make_joint_damper(joint.name, s, assembly.at_least_zero(*joint.damping, part + ": damping")));
+}
+
+}  // namespace rubato::model
