@@ -34,6 +34,7 @@ PICTURES = {
                      "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
                      "responses": "response beside"},
     "building": {"motion": "Motion of the coordinates"},
+    "two-supports": {"motion": "Motion of the coordinates"},
     "late-stop": {"motion": "Motion of the coordinates"},
     "frame": {"motion": "Motion of the coordinates"},
     "heavy-top": {"motion": "Motion of the coordinates"},

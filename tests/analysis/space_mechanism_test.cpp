@@ -83,8 +83,9 @@ TEST(SpaceStudies, RunBricardsMechanismAndNameItsRedundancy) {
     ASSERT_DOUBLE_EQ(table.rows[row][0], double(second));
     const Vector3 middle = 0.5 * (motion.corner[2] + motion.corner[3]);
     largest = std::max(largest, (position_of(table, row, "rod 3") - middle).norm());
-    // Hinge 1 turns by how far a has left 90 degrees, about the axis -y of the reference.
-    EXPECT_NEAR(table.rows[row][table.column("angle", "hinge 1")], 0.5 * pi - exact.a, 2e-3) << second;
+    // Hinge 1 turns by how far a has left 90 degrees, about the axis -y of the reference. The bound is that of the
+    // middle of a rod below, half a metre from its hinge.
+    EXPECT_NEAR(table.rows[row][table.column("angle", "hinge 1")], 0.5 * pi - exact.a, 4.4e-3) << second;
   }
   // The tolerance 1e-3 is a share of the motion: five rods of 1 kg that go 1 m, 2.2 m sqrt(kg), if all of it is one
   // rod's.

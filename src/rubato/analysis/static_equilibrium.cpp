@@ -69,7 +69,7 @@ class StaticSolver {
   StaticSolver(const system::LocallyNonlinear& system, std::span<const model::Held> held)
       : system_(system), held_(held), contacts_(system), load_(system.size()), place_(system.size()) {
     system::Loads loads = system.loads();
-    loads.evaluate(0.0, load_, model::Side::left);
+    loads.evaluate_static(0.0, load_, model::Side::left);
     for (const auto& force : system.held_forces()) load_[force.coordinate] += force.value;
     std::fill(place_.begin(), place_.end(), 0);
     result_.state = system.start();

@@ -28,13 +28,16 @@ double positive(const model::Quantity& quantity, const numerics::Parameters& par
 void require_tables_to_reach(const system::LocallyNonlinear& system, double end, const Location& where) {
   for (const auto& term : system.loads().terms()) {
     const auto* table = std::get_if<model::TableLaw>(&term.law);
-    if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
-    if (table->times.front() <= 0.0 && table->times.back() >= end * (1.0 - 1e-12)) continue;
+    const auto* spline = std::get_if<model::SplineLaw>(&term.law);
+    if (!(table && table->beyond == model::TableLaw::Beyond::error) && !(spline && !spline->holds_beyond)) continue;
+    const std::vector<double>& times = table ? table->times : spline->times;
+    const std::string& source = table ? table->source : spline->source;
+    if (times.front() <= 0.0 && times.back() >= end * (1.0 - 1e-12)) continue;
     throw InvalidInput(
         where, fmt::format("the table {} reaches from {} s to {} s, the analysis from 0 s to {} s; extend "
-                           "it, or say beyond = \"zero\" or \"hold\" where it is used",
-                           table->source.empty() ? "of a load" : "\"" + table->source + "\"", table->times.front(),
-                           table->times.back(), end));
+                           "it, or say beyond = {}\"hold\" where it is used",
+                           source.empty() ? "of a load" : "\"" + source + "\"", times.front(), times.back(), end,
+                           table ? "\"zero\" or " : ""));
   }
 }
 
@@ -124,35 +127,49 @@ integrate::Method method_of(const model::MethodDescription& description, const n
   }
 }
 
-Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system) {
+Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system,
+                     Supports supports) {
+  const bool has_supports = supports == Supports::observed && system.supports();
   const auto index_of = [&](const std::string& name) {
-    const auto& known = system.coordinates();
+    std::vector<std::string> known = system.coordinates();
+    if (has_supports) known.insert(known.end(), system.supports()->names().begin(), system.supports()->names().end());
     const auto found = std::find(known.begin(), known.end(), name);
     if (found != known.end()) return static_cast<Index>(found - known.begin());
+    if (system.supports() && std::count(system.supports()->names().begin(), system.supports()->names().end(), name) > 0)
+      throw InvalidInput(description.where, fmt::format("observe names \"{}\", which moves as its [[displacement]] "
+                                                        "says; only transients show it",
+                                                        name));
     const bool lacks_spaces = name.find('-') != std::string::npos && nearest_name(name, known).empty();
     throw InvalidInput(description.where,
                        fmt::format("observe names \"{}\", which is no coordinate{}{}", name, suggestion(name, known),
                                    lacks_spaces ? "; a difference is written with spaces, \"a - b\"" : ""));
   };
+  const auto turns = [&](Index i) {
+    return i < system.size() ? system.is_rotation(i) : system.supports()->is_rotation(i - system.size());
+  };
   const Index first = index_of(description.first);
-  if (description.second.empty()) return {description.first, first, ground, system.is_rotation(first)};
+  if (description.second.empty()) return {description.first, first, ground, turns(first)};
   const Index second = index_of(description.second);
-  if (system.is_rotation(first) != system.is_rotation(second))
+  if (turns(first) != turns(second))
     throw InvalidInput(description.where,
                        fmt::format("observe: \"{} - {}\" is the difference of a displacement [m] and "
                                    "a rotation [rad]",
                                    description.first, description.second));
-  return {description.first + " - " + description.second, first, second, system.is_rotation(first)};
+  return {description.first + " - " + description.second, first, second, turns(first)};
 }
 
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
-                                      const system::LocallyNonlinear& system) {
+                                      const system::LocallyNonlinear& system, Supports supports) {
   std::vector<Observed> observed;
-  if (wanted)
-    for (const auto& observation : *wanted) observed.push_back(observed_of(observation, system));
-  else
+  if (wanted) {
+    for (const auto& observation : *wanted) observed.push_back(observed_of(observation, system, supports));
+  } else {
     for (Index i = 0; i < system.size(); ++i)
       observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+    for (Index i = 0; supports == Supports::observed && system.supports() && i < system.supports()->size(); ++i)
+      observed.push_back({system.supports()->names()[static_cast<std::size_t>(i)], system.size() + i, ground,
+                          system.supports()->is_rotation(i)});
+  }
   std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
   return observed;
 }
@@ -171,6 +188,12 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   if (is_exact && (description.step || description.automatic_step))
     throw InvalidInput(place(description.step ? description.step->where : description.automatic_step->where, where),
                        title + "the method exact takes no step; remove the key, or choose another method");
+  if (is_exact && system.supports())
+    throw InvalidInput(
+        place(description.method.where, where),
+        fmt::format("{}the method exact knows forces, and \"{}\" moves as its [[displacement]] says; take "
+                    "\"generalized_alpha\"",
+                    title, system.supports()->names().front()));
   if (description.automatic_step) {
     plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, plan.start,
                                          parameters, plan.duration, description.allow_unstable);
@@ -189,7 +212,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);
-  plan.observed = observed_or_all(description.observe, system);
+  plan.observed = observed_or_all(description.observe, system, Supports::observed);
   return plan;
 }
 

@@ -45,12 +45,16 @@ integrate::Method method_of(const model::MethodDescription& description, const n
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where);
 
+/// Whether supports that move count among the coordinates, after the free ones, as in MovingSupports.
+enum class Supports { left_out, observed };
+
 /// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
-Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system);
+Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system,
+                     Supports supports = Supports::left_out);
 
 /// What is asked for, or every coordinate: displacements, then rotations.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
-                                      const system::LocallyNonlinear& system);
+                                      const system::LocallyNonlinear& system, Supports supports = Supports::left_out);
 
 /// Evaluates a description and checks that it can run: values in their ranges, names known, tables that reach over the
 /// whole run, and a step below the stability limit of the model unless `allow_unstable`. Throws InvalidInput.

@@ -46,6 +46,7 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
   observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
   sliders_.add(layout);
   stops_.add(layout);
+  if (system.supports()) add_reactions(layout);
   rows_ = sink.open(layout);
   if (!plan.energy) return;
   results::TableLayout energy{name, "energy", "time", {time}, {{"type", "energy"}}};
@@ -58,8 +59,40 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
   blocks.push_back(scalar("slider_dissipated", "dissipated by slip since the start"));
   if (system.stop_count() > 0) blocks.push_back(scalar("stop_dissipated", "dissipated by the stops since the start"));
   blocks.push_back(scalar("load_work", "work of the loads since the start"));
+  if (system.supports())
+    blocks.push_back(scalar("drive_work", "work of the forces that move supports since the start"));
   blocks.push_back(scalar("residue", "what the method itself made (+) or lost (-)"));
   energy_rows_ = sink.open(energy);
+}
+
+/// Forces of displacements, then moments of rotations.
+void TransientRecorder::add_reactions(results::TableLayout& layout) const {
+  const system::MovingSupports& supports = *system_.supports();
+  for (const bool is_rotation : {false, true}) {
+    std::vector<std::string> names;
+    for (Index i = 0; i < supports.size(); ++i)
+      if (supports.is_rotation(i) == is_rotation) names.push_back(supports.names()[static_cast<std::size_t>(i)]);
+    if (names.empty()) continue;
+    if (is_rotation)
+      layout.blocks.push_back({"reaction_moment", "N m", "moment that turns the support", "turning_support", names});
+    else
+      layout.blocks.push_back({"reaction", "N", "force that moves the support", "moving_support", names});
+  }
+}
+
+void TransientRecorder::append_supports(const system::State& state) {
+  const system::MovingSupports& supports = *system_.supports();
+  const auto side = model::Side::right;
+  supports.extend(state.t, side, state.q, q_, 0);
+  supports.extend(state.t, side, state.v, v_, 1);
+  supports.extend(state.t, side, acceleration_, a_, 2);
+  supports.reaction(state.t, side, q_, v_, a_, reaction_);
+  observed_.append({&q_, &v_, &a_}, row_);
+  sliders_.append(state, row_);
+  stops_.append(state, row_);
+  for (const bool is_rotation : {false, true})
+    for (Index i = 0; i < supports.size(); ++i)
+      if (supports.is_rotation(i) == is_rotation) row_.push_back(reaction_[i]);
 }
 
 void TransientRecorder::record(const system::State& state, const Energy* energy, const Vector* acceleration) {
@@ -69,9 +102,13 @@ void TransientRecorder::record(const system::State& state, const Energy* energy,
     equilibrium_(state, acceleration_);
   row_.clear();
   row_.push_back(state.t);
-  observed_.append({&state.q, &state.v, &acceleration_}, row_);
-  sliders_.append(state, row_);
-  stops_.append(state, row_);
+  if (system_.supports()) {
+    append_supports(state);
+  } else {
+    observed_.append({&state.q, &state.v, &acceleration_}, row_);
+    sliders_.append(state, row_);
+    stops_.append(state, row_);
+  }
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;
@@ -81,6 +118,7 @@ void TransientRecorder::record(const system::State& state, const Energy* energy,
   row_.push_back(energy->slider_dissipated);
   if (system_.stop_count() > 0) row_.push_back(energy->stop_dissipated);
   row_.push_back(energy->load_work);
+  if (system_.supports()) row_.push_back(energy->drive_work);
   row_.push_back(energy->residue());
   energy_rows_->append(row_);
 }

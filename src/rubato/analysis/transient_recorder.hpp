@@ -25,12 +25,16 @@ class TransientRecorder {
   long rows() const { return count_; }
 
  private:
+  void add_reactions(results::TableLayout& layout) const;
+  void append_supports(const system::State& state);
+
   const system::LocallyNonlinear& system_;
   ObservedBlocks observed_;
   SliderBlocks sliders_;
   StopBlocks stops_;
   system::EquilibriumAcceleration equilibrium_;
   Vector acceleration_;
+  Vector q_, v_, a_, reaction_;  // of all coordinates, where supports move
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;
   long count_ = 0;

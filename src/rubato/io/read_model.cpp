@@ -116,6 +116,28 @@ std::optional<MatricesDescription> read_matrices(TomlReader& root, const std::fi
   return matrices;
 }
 
+/// Held in static states by its value, or moving as a law says.
+void read_displacement(TomlReader& reader, const std::filesystem::path& folder, ModelDescription& model) {
+  Location where;
+  const std::string on = reader.name("on", &where);
+  reader.rename(fmt::format("the displacement of \"{}\"", on));
+  const std::vector<std::string> of_laws{"amplitude", "expression", "table", "angular_frequency",
+                                         "frequency", "phase",      "beyond"};
+  if (reader.has("value")) {
+    reader.refuse_beside("value", of_laws);
+    model.displacements.push_back({on, reader.quantity("value"), where});
+  } else {
+    reader.refuse_misspelling_of("value");
+    if (!reader.has("amplitude") && !reader.has("expression") && !reader.has("table"))
+      throw InvalidInput(where,
+                         fmt::format("{} needs a \"value\", which is held in static states and then released, or a "
+                                     "law by which it moves: \"expression\" of t, \"table\" or \"amplitude\"",
+                                     reader.what()));
+    model.prescribed.push_back({on, read_law(reader, folder), where});
+  }
+  reader.finish();
+}
+
 std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const std::filesystem::path& folder) {
   auto reader = root.optional_table("base_motion", "[base_motion]");
   if (!reader) return std::nullopt;
@@ -210,6 +232,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     reader.finish();
     model.distributed_forces.push_back(std::move(force));
   }
+  for (TomlReader& reader : root.tables("displacement")) read_displacement(reader, folder, model);
   model.base_motion = read_base_motion(root, folder);
   read_structure(root, folder, model);
   read_mechanism(root, model);

@@ -10,7 +10,7 @@ namespace rubato::io {
 /// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
 model::ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder);
 
-/// [[node]], [[beam]] ... [[support]], [[displacement]] and [gravity].
+/// [[node]], [[beam]] ... [[support]] and [gravity].
 void read_structure(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
 
 /// [[body]] and [[joint]].

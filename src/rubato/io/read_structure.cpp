@@ -132,14 +132,6 @@ void read_structure(TomlReader& root, const std::filesystem::path& folder, Model
   read_mesh(root, folder, structure);
   for (TomlReader& reader : root.tables("mass")) structure.masses.push_back(read_mass(reader));
   for (TomlReader& reader : root.tables("support")) structure.supports.push_back(read_support(reader));
-  for (TomlReader& reader : root.tables("displacement")) {
-    HeldDescription displacement;
-    displacement.on = reader.name("on", &displacement.where);
-    reader.rename(fmt::format("the displacement of \"{}\"", displacement.on));
-    displacement.value = reader.quantity("value");
-    reader.finish();
-    model.displacements.push_back(std::move(displacement));
-  }
   if (auto reader = root.optional_table("gravity", "[gravity]")) {
     GravityDescription gravity;
     gravity.where = reader->where();

@@ -39,6 +39,7 @@ class Builder {
                                     number(held.value, fmt::format("the force on \"{}\": held", held.on))});
     for (const DistributedForceDescription& force : description_.distributed_forces) take_distributed_force(force);
     take_displacements();
+    take_prescribed();
     if (description_.gravity) take_gravity(*description_.gravity);
     if (description_.base_motion) take_base_motion(*description_.base_motion);
     return std::move(model_);
@@ -330,6 +331,37 @@ class Builder {
       model_.held_displacements.push_back(
           {place, number(held.value, fmt::format("the displacement of \"{}\": value", held.on))});
     }
+  }
+
+  void take_prescribed() {
+    for (const PrescribedDescription& motion : description_.prescribed) {
+      const Index place = find(motion.on, motion.where, "a displacement is of");
+      const auto refuse = [&](const std::string& why) {
+        throw InvalidInput(motion.where,
+                           fmt::format("\"{}\" moves as its [[displacement]] says, and {}", motion.on, why));
+      };
+      const auto is_of_it = [&](const auto& other) { return other.coordinate == place; };
+      if (std::any_of(model_.prescribed.begin(), model_.prescribed.end(), is_of_it)) refuse("as another one says");
+      if (std::any_of(model_.held_displacements.begin(), model_.held_displacements.end(), is_of_it))
+        refuse("another one holds it; a law has a value at t = 0 already");
+      if (model_.position[place] != 0.0 || model_.velocity[place] != 0.0)
+        refuse("it is given a position or velocity at the start; leave them out");
+      const auto refuse_contact = [&](const auto& contact) {
+        if (contact.first == place || contact.second == place)
+          refuse(
+              fmt::format("\"{}\" joins it: sliders and stops join what moves freely; put a light mass on a stiff "
+                          "spring between, or take [base_motion], by which the ground itself moves",
+                          contact.name));
+      };
+      for (const Slider& slider : model_.sliders) refuse_contact(slider);
+      for (const Stop& stop : model_.stops) refuse_contact(stop);
+      model_.prescribed.push_back(build_prescribed(motion, place, parameters_));
+    }
+    if (static_cast<Index>(model_.prescribed.size()) == model_.size())
+      throw InvalidInput(description_.prescribed.empty() ? description_.where : description_.prescribed.front().where,
+                         "every coordinate moves as a [[displacement]] says: nothing is left to compute");
+    std::sort(model_.prescribed.begin(), model_.prescribed.end(),
+              [](const Prescribed& a, const Prescribed& b) { return a.coordinate < b.coordinate; });
   }
 
   void take_gravity(const GravityDescription& gravity) {

@@ -30,6 +30,8 @@ void refuse_foreign_parts(const ModelDescription& d) {
     refuse(d.distributed_forces.front().where, "a [[distributed_force]]", "apply forces at nodes");
   if (!d.displacements.empty())
     refuse(d.displacements.front().where, "a [[displacement]]", "give the configuration from which to start");
+  if (!d.prescribed.empty())
+    refuse(d.prescribed.front().where, "a [[displacement]]", "drive a joint between the ground and the node");
   if (!d.held_forces.empty()) refuse(d.held_forces.front().where, "a held force", "give the force a law of t");
   if (!d.structure.trusses.empty())
     refuse(d.structure.trusses.front().where, "a [[truss]]", "take a joint of type \"distance\", or a beam");

@@ -12,6 +12,10 @@ namespace rubato::model {
 TimeLaw build_time_law(const TimeLawDescription& description, const numerics::Parameters& parameters,
                        const std::string& part);
 
+/// The motion of a coordinate with its derivatives.
+Prescribed build_prescribed(const PrescribedDescription& description, Index coordinate,
+                            const numerics::Parameters& parameters);
+
 /// @param n  coordinates of the model
 Damping build_damping(const DampingDescription& description, Index n, const numerics::Parameters& parameters);
 /// Where damping is described; of no damping, nowhere.

@@ -132,6 +132,13 @@ struct HeldDescription {
   Location where;
 };
 
+/// A coordinate that moves with time as a law says, whatever that takes; in a static state it stands where it starts.
+struct PrescribedDescription {
+  std::string on;          ///< a coordinate
+  TimeLawDescription law;  ///< [m] or [rad]
+  Location where;
+};
+
 /// Acts on elements and masses of nodes, in their translations.
 struct GravityDescription {
   std::vector<Quantity> acceleration;  ///< along x and y; along x, y and z in space [m/s2]
@@ -184,6 +191,7 @@ struct ModelDescription {
   std::vector<ForceDescription> forces;
   std::vector<DistributedForceDescription> distributed_forces;
   std::vector<HeldDescription> held_forces, displacements;
+  std::vector<PrescribedDescription> prescribed;
   std::optional<GravityDescription> gravity;
   std::optional<BaseMotionDescription> base_motion;
   Location where;

@@ -83,6 +83,12 @@ struct Held {
   double value = 0.0;  ///< [N] or [m]; [N m] or [rad] of a rotation
 };
 
+/// A coordinate that moves as laws say, whatever that takes.
+struct Prescribed {
+  Index coordinate = 0;
+  TimeLaw displacement, velocity, acceleration;  ///< [m] or [rad], and its derivatives
+};
+
 /// A structure of coordinates with values for everything: validated, immutable by convention once built.
 struct Model {
   std::vector<std::string> coordinates;  ///< names, [n]
@@ -98,7 +104,8 @@ struct Model {
   std::vector<Force> forces;
   std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;
-  Axis gravity = Axis::Zero();  ///< acts on the nodes [m/s2]
+  std::vector<Prescribed> prescribed;  ///< rising coordinates
+  Axis gravity = Axis::Zero();         ///< acts on the nodes [m/s2]
   std::optional<BaseMotion> base_motion;
 
   Index size() const { return static_cast<Index>(coordinates.size()); }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/time_formula.hpp>
 
 #include <string>
 #include <variant>
@@ -28,7 +29,27 @@ struct TableLaw {
   std::string source;             ///< the file, for messages
 };
 
-using TimeLaw = std::variant<HarmonicLaw, FormulaLaw, TableLaw>;
+/// A derivative of a formula with respect to t: how a support moves.
+struct FormulaDerivative {
+  numerics::TimeFormula formula;
+  int order = 0;  ///< 0, 1 or 2
+};
+
+/// A derivative of the natural cubic spline through the rows of a table, whose acceleration is continuous: how a
+/// support moves. Beyond the rows it stands still.
+struct SplineLaw {
+  std::vector<double> times;       ///< rising, at least two [s]
+  std::vector<double> values;      ///< at the rows
+  std::vector<double> curvatures;  ///< second derivatives at the rows, zero at both ends
+  int order = 0;                   ///< 0, 1 or 2
+  bool holds_beyond = false;       ///< else an analysis refuses to run beyond the table
+  std::string source;              ///< the file, for messages
+};
+
+using TimeLaw = std::variant<HarmonicLaw, FormulaLaw, TableLaw, FormulaDerivative, SplineLaw>;
+
+/// The spline through the rows of a table (de Boor 1978, chapter 4), of order 0.
+SplineLaw spline_through(const TableLaw& table);
 
 /// Which limit to take where a law jumps.
 enum class Side { left, right };

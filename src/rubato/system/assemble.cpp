@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/system/assemble.hpp>
+#include <rubato/system/eliminate_supports.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -102,9 +103,14 @@ SparseMatrix modal_damping(const model::ModalDampingRatios& damping, const Spars
   return product.sparseView(product.cwiseAbs().maxCoeff(), 1e-14);
 }
 
-SparseMatrix damping_matrix(const model::Damping& damping, const SparseMatrix& mass, const SparseMatrix& stiffness) {
-  if (const auto* modal = std::get_if<model::ModalDampingRatios>(&damping))
-    return modal_damping(*modal, mass, stiffness);
+SparseMatrix damping_matrix(const model::Model& model, const SparseMatrix& mass, const SparseMatrix& stiffness) {
+  const model::Damping& damping = model.damping;
+  if (const auto* modal = std::get_if<model::ModalDampingRatios>(&damping)) {
+    if (model.prescribed.empty()) return modal_damping(*modal, mass, stiffness);
+    return relative_damping(
+        modal_damping(*modal, free_part(mass, model.prescribed), free_part(stiffness, model.prescribed)), stiffness,
+        model.prescribed);
+  }
   if (const auto* rayleigh = std::get_if<model::RayleighCoefficients>(&damping))
     return rayleigh->mass * mass + rayleigh->stiffness * stiffness;
   return SparseMatrix(mass.rows(), mass.cols());
@@ -189,7 +195,7 @@ LocallyNonlinear assemble(const model::Model& model) {
   const bool has_releases =
       std::any_of(properties.begin(), properties.end(), [](const auto& p) { return p.released != 0; });
   require_positive_definite(parts.mass, model.coordinates, !model.matrices && !has_releases);
-  parts.damping = damping_matrix(model.damping, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
+  parts.damping = damping_matrix(model, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
   parts.sliders = model.sliders;
@@ -202,6 +208,7 @@ LocallyNonlinear assemble(const model::Model& model) {
   parts.reference = model::reference_value(model.structure, model.mass);
   parts.held_forces = model.held_forces;
   parts.held_displacements = model.held_displacements;
+  if (!model.prescribed.empty()) eliminate_supports(parts, model.prescribed);
   return LocallyNonlinear(std::move(parts));
 }
 

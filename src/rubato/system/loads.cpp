@@ -7,9 +7,9 @@
 namespace rubato::system {
 namespace {
 
-bool joins(const model::HarmonicLaw& a, const model::TimeLaw& b) {
-  const auto* other = std::get_if<model::HarmonicLaw>(&b);
-  return other && other->angular_frequency == a.angular_frequency && other->phase == a.phase;
+bool joins(const model::HarmonicLaw& a, LoadTerm::Source source, const LoadTerm& b) {
+  const auto* other = std::get_if<model::HarmonicLaw>(&b.law);
+  return other && b.source == source && other->angular_frequency == a.angular_frequency && other->phase == a.phase;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ Loads::Loads(std::vector<LoadTerm> terms) {
       for (double& weight : term.weights) weight *= harmonic->amplitude;
       harmonic->amplitude = 1.0;
       const auto same = std::find_if(terms_.begin(), terms_.end(),
-                                     [&](const LoadTerm& known) { return joins(*harmonic, known.law); });
+                                     [&](const LoadTerm& known) { return joins(*harmonic, term.source, known); });
       if (same != terms_.end()) {
         same->rows.insert(same->rows.end(), term.rows.begin(), term.rows.end());
         same->weights.insert(same->weights.end(), term.weights.begin(), term.weights.end());
@@ -38,8 +38,21 @@ bool Loads::are_harmonic() const {
 }
 
 void Loads::evaluate(double t, Vector& f, model::Side side) const {
+  evaluate_up_to(LoadTerm::Source::moving_support, t, f, side);
+}
+
+void Loads::evaluate_static(double t, Vector& f, model::Side side) const {
+  evaluate_up_to(LoadTerm::Source::displaced_support, t, f, side);
+}
+
+void Loads::evaluate_forces(double t, Vector& f, model::Side side) const {
+  evaluate_up_to(LoadTerm::Source::force, t, f, side);
+}
+
+void Loads::evaluate_up_to(LoadTerm::Source last, double t, Vector& f, model::Side side) const {
   f.setZero();
   for (const LoadTerm& term : terms_) {
+    if (term.source > last) continue;
     const double now = model::value(term.law, t, side);
     for (std::size_t i = 0; i < term.rows.size(); ++i) f[term.rows[i]] += term.weights[i] * now;
   }
@@ -47,10 +60,13 @@ void Loads::evaluate(double t, Vector& f, model::Side side) const {
 
 std::vector<double> Loads::breakpoints(double from, double to) const {
   std::vector<double> times;
-  for (const LoadTerm& term : terms_)
-    if (const auto* table = std::get_if<model::TableLaw>(&term.law))
-      std::copy_if(table->times.begin(), table->times.end(), std::back_inserter(times),
-                   [&](double t) { return t > from && t < to; });
+  const auto take = [&](const std::vector<double>& rows) {
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(times), [&](double t) { return t > from && t < to; });
+  };
+  for (const LoadTerm& term : terms_) {
+    if (const auto* table = std::get_if<model::TableLaw>(&term.law)) take(table->times);
+    if (const auto* spline = std::get_if<model::SplineLaw>(&term.law)) take(spline->times);
+  }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;

@@ -3,9 +3,11 @@
 #include <rubato/core/types.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/loads.hpp>
+#include <rubato/system/moving_supports.hpp>
 #include <rubato/system/state.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,7 @@ class LocallyNonlinear {
     /// Characteristic size of the model for error measures (model::reference_value) [m sqrt(kg)]; 0: it has none.
     double reference = 0.0;
     std::vector<model::Held> held_forces, held_displacements;  ///< in the static start only
+    std::optional<MovingSupports> supports;                    ///< whose pull is among the loads
   };
 
   explicit LocallyNonlinear(Parts parts);
@@ -60,6 +63,8 @@ class LocallyNonlinear {
     return !parts_.is_rotation.empty() && parts_.is_rotation[static_cast<std::size_t>(i)] != 0;
   }
   double reference() const { return parts_.reference; }
+  /// Null where none moves.
+  const MovingSupports* supports() const { return parts_.supports ? &*parts_.supports : nullptr; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
   /// u = x_first - x_second of contact i [m]; of velocities, its rate

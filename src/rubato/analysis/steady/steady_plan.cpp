@@ -31,6 +31,11 @@ void require_harmonic_loads(const model::ModelDescription& model, const Location
   };
   for (const auto& force : model.forces) require(force.law, force.where, fmt::format("the force on \"{}\"", force.on));
   if (model.base_motion) require(model.base_motion->law, model.base_motion->where, "[base_motion]");
+  if (!model.prescribed.empty())
+    throw InvalidInput(place(model.prescribed.front().where, where),
+                       fmt::format("{}\"{}\" moves as its [[displacement]] says, which steady responses do not know; "
+                                   "let the ground move by [base_motion], or run a transient",
+                                   title, model.prescribed.front().on));
   if (model.forces.empty() && !model.base_motion)
     throw InvalidInput(where, title + "nothing drives the model; add a [[force]] with amplitude and angular_frequency");
 }

@@ -113,7 +113,8 @@ function hysteresis_loops(table, force) {
 
 // Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
 const ledger_panels = [
-  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated"], domain: [0.60, 1.0]},
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated",
+    "friction_dissipated", "drive_work"], domain: [0.60, 1.0]},
   {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored"], domain: [0.24, 0.54]},
   {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
 ];
@@ -193,6 +194,8 @@ function write_transient(chapter, analysis) {
       add_section(chapter, "Hysteresis loops", hysteresis_loops(table, force));
     }
   }
+  const supports = of(["reaction", "reaction_moment"]);
+  if (supports.length) add_section(chapter, "Moving supports", history_figure(table, supports, "Forces that move the supports"));
   if (stops.length) add_section(chapter, "Stops", history_figure(table, stops, "Stops: force and penetration"));
   if (hinges.length === 2) {
     add_section(chapter, "Rotational sliders", history_figure(table, hinges, "Sliders between rotations: moment and slip"));

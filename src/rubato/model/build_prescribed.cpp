@@ -1,0 +1,66 @@
+#include <rubato/model/build_parts.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace rubato::model {
+namespace {
+
+struct Building {
+  const numerics::Parameters& parameters;
+  const std::string& part;
+  const Location& where;
+  Index coordinate;
+
+  Prescribed operator()(const HarmonicDescription& harmonic) const {
+    const auto law = std::get<HarmonicLaw>(build_time_law(harmonic, parameters, part));
+    const double a = law.amplitude, w = law.angular_frequency;
+    return {coordinate, law, HarmonicLaw{a * w, w, law.phase + 0.5 * std::numbers::pi},
+            HarmonicLaw{-a * w * w, w, law.phase}};
+  }
+
+  Prescribed operator()(const TimeFormulaDescription& formula) const {
+    try {
+      const numerics::TimeFormula motion(formula.formula.expression, parameters);
+      const numerics::TimeDerivatives start = motion(0.0);
+      if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
+        throw InvalidInput(fmt::format("\"{}\" has no finite value, rate and second rate at t = 0 ({}, {}, {})",
+                                       motion.text(), start.value, start.rate, start.second_rate));
+      return {coordinate, FormulaDerivative{motion, 0}, FormulaDerivative{motion, 1}, FormulaDerivative{motion, 2}};
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(formula.formula.where, part + ": " + fault.message());
+    }
+  }
+
+  Prescribed operator()(const TableDescription& description) const {
+    const auto table = std::get<TableLaw>(build_time_law(description, parameters, part));
+    if (table.beyond == TableLaw::Beyond::zero)
+      throw InvalidInput(where, fmt::format("{}: beyond = \"zero\" would make it jump; take \"hold\", or extend the "
+                                            "table \"{}\"",
+                                            part, table.source));
+    if (table.times.size() < 2)
+      throw InvalidInput(
+          where, fmt::format("{}: the table \"{}\" has one row; a motion takes at least two", part, table.source));
+    for (std::size_t i = 1; i < table.times.size(); ++i)
+      if (!(table.times[i] > table.times[i - 1]))
+        throw InvalidInput(where, fmt::format("{}: the table \"{}\" jumps at t = {} s, and nothing moves from one "
+                                              "place to another at once; give its rows a time between",
+                                              part, table.source, table.times[i]));
+    SplineLaw displacement = spline_through(table), velocity = displacement, acceleration = displacement;
+    velocity.order = 1;
+    acceleration.order = 2;
+    return {coordinate, std::move(displacement), std::move(velocity), std::move(acceleration)};
+  }
+};
+
+}  // namespace
+
+Prescribed build_prescribed(const PrescribedDescription& description, Index coordinate,
+                            const numerics::Parameters& parameters) {
+  const std::string part = fmt::format("the displacement of \"{}\"", description.on);
+  return std::visit(Building{parameters, part, description.where, coordinate}, description.law);
+}
+
+}  // namespace rubato::model

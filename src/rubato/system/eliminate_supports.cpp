@@ -1,0 +1,171 @@
+#include <rubato/core/error.hpp>
+#include <rubato/system/eliminate_supports.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <utility>
+
+namespace rubato::system {
+namespace {
+
+/// Where a coordinate of all goes: among the free ones, or among those that are given.
+class Split {
+ public:
+  Split(Index n, std::span<const model::Prescribed> motions) : place_(static_cast<std::size_t>(n), 0) {
+    for (const auto& motion : motions) place_[static_cast<std::size_t>(motion.coordinate)] = ground;
+    for (Index& place : place_) place = place == ground ? -1 - given_++ : free_++;
+  }
+  Index free() const { return free_; }
+  Index given() const { return given_; }
+  bool is_free(Index i) const { return place_[static_cast<std::size_t>(i)] >= 0; }
+  /// Among the free ones.
+  Index among_free(Index i) const { return place_[static_cast<std::size_t>(i)]; }
+  Index among_given(Index i) const { return -1 - place_[static_cast<std::size_t>(i)]; }
+  /// Free ones first.
+  Index among_all(Index i) const { return is_free(i) ? among_free(i) : free_ + among_given(i); }
+
+ private:
+  std::vector<Index> place_;
+  Index free_ = 0, given_ = 0;
+};
+
+SparseMatrix made_of(const SparseMatrix& matrix, Index rows, Index columns, const auto& place) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index column = 0; column < matrix.cols(); ++column)
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry) {
+      const auto [i, j] = place(entry.row(), column);
+      if (i >= 0 && j >= 0) entries.emplace_back(i, j, entry.value());
+    }
+  SparseMatrix out(rows, columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
+
+SparseMatrix free_part(const SparseMatrix& matrix, const Split& split) {
+  return made_of(matrix, split.free(), split.free(), [&](Index i, Index j) {
+    return std::pair(split.is_free(i) ? split.among_free(i) : -1, split.is_free(j) ? split.among_free(j) : -1);
+  });
+}
+
+/// Rows of what is given, columns of all.
+SparseMatrix given_rows(const SparseMatrix& matrix, const Split& split) {
+  return made_of(matrix, split.given(), split.free() + split.given(), [&](Index i, Index j) {
+    return std::pair(split.is_free(i) ? -1 : split.among_given(i), split.among_all(j));
+  });
+}
+
+/// Splits the rows of loads.
+std::pair<std::vector<LoadTerm>, std::vector<LoadTerm>> split_loads(const Loads& loads, const Split& split) {
+  std::pair<std::vector<LoadTerm>, std::vector<LoadTerm>> out;
+  for (const LoadTerm& term : loads.terms()) {
+    LoadTerm of_free{{}, {}, term.law, term.source}, of_given = of_free;
+    for (std::size_t i = 0; i < term.rows.size(); ++i) {
+      const bool is_free = split.is_free(term.rows[i]);
+      LoadTerm& to = is_free ? of_free : of_given;
+      to.rows.push_back(is_free ? split.among_free(term.rows[i]) : split.among_given(term.rows[i]));
+      to.weights.push_back(term.weights[i]);
+    }
+    if (!of_free.rows.empty()) out.first.push_back(std::move(of_free));
+    if (!of_given.rows.empty()) out.second.push_back(std::move(of_given));
+  }
+  return out;
+}
+
+/// What a support that moves by a law pulls at the free coordinates.
+void add_pull(const SparseMatrix& matrix, const Split& split, Index coordinate, const model::TimeLaw& law,
+              LoadTerm::Source source, std::vector<LoadTerm>& terms) {
+  LoadTerm term{{}, {}, law, source};
+  for (SparseMatrix::InnerIterator entry(matrix, coordinate); entry; ++entry) {
+    if (!split.is_free(entry.row()) || entry.value() == 0.0) continue;
+    term.rows.push_back(split.among_free(entry.row()));
+    term.weights.push_back(-entry.value());
+  }
+  if (!term.rows.empty()) terms.push_back(std::move(term));
+}
+
+Vector free_entries(const Vector& all, const Split& split) {
+  if (all.size() == 0) return all;
+  Vector out(split.free());
+  for (Index i = 0; i < all.size(); ++i)
+    if (split.is_free(i)) out[split.among_free(i)] = all[i];
+  return out;
+}
+
+}  // namespace
+
+void eliminate_supports(LocallyNonlinear::Parts& parts, std::span<const model::Prescribed> motions) {
+  const Split split(parts.mass.rows(), motions);
+  const Index f = split.free(), p = split.given();
+  auto [on_free, on_given] = split_loads(parts.loads, split);
+  MovingSupports::Parts supports;
+  supports.motions.assign(motions.begin(), motions.end());
+  supports.mass = given_rows(parts.mass, split);
+  supports.damping = given_rows(parts.damping, split);
+  supports.stiffness = given_rows(parts.stiffness, split);
+  supports.own_mass = supports.mass.rightCols(p);
+  supports.own_stiffness = supports.stiffness.rightCols(p);
+  supports.loads = Loads(std::move(on_given));
+  using Source = LoadTerm::Source;
+  for (const auto& motion : motions) {
+    add_pull(parts.stiffness, split, motion.coordinate, motion.displacement, Source::displaced_support, on_free);
+    add_pull(parts.damping, split, motion.coordinate, motion.velocity, Source::moving_support, on_free);
+    add_pull(parts.mass, split, motion.coordinate, motion.acceleration, Source::moving_support, on_free);
+  }
+  parts.loads = Loads(std::move(on_free));
+  for (SparseMatrix* matrix : {&parts.mass, &parts.damping, &parts.stiffness}) *matrix = free_part(*matrix, split);
+  const auto move_end = [&](Index& end) {
+    if (end != ground) end = split.among_free(end);
+  };
+  const auto move_contact = [&](auto& contact) {
+    move_end(contact.first);
+    move_end(contact.second);
+  };
+  for (auto& slider : parts.sliders) move_contact(slider);
+  for (auto& stop : parts.stops) move_contact(stop);
+  parts.start.q = free_entries(parts.start.q, split);
+  parts.start.v = free_entries(parts.start.v, split);
+  std::vector<std::string> names(static_cast<std::size_t>(f));
+  supports.names.resize(static_cast<std::size_t>(p));
+  std::vector<char> is_rotation(parts.is_rotation.empty() ? 0 : static_cast<std::size_t>(f));
+  if (!is_rotation.empty()) supports.is_rotation.resize(static_cast<std::size_t>(p));
+  for (std::size_t i = 0; i < parts.coordinates.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    const bool is_free = split.is_free(at);
+    const auto to = static_cast<std::size_t>(is_free ? split.among_free(at) : split.among_given(at));
+    (is_free ? names : supports.names)[to] = std::move(parts.coordinates[i]);
+    if (!is_rotation.empty()) (is_free ? is_rotation : supports.is_rotation)[to] = parts.is_rotation[i];
+  }
+  parts.coordinates = std::move(names);
+  parts.is_rotation = std::move(is_rotation);
+  for (auto* held : {&parts.held_forces, &parts.held_displacements}) {
+    std::erase_if(*held, [&](const model::Held& one) { return !split.is_free(one.coordinate); });
+    for (auto& one : *held) one.coordinate = split.among_free(one.coordinate);
+  }
+  parts.supports.emplace(std::move(supports));
+}
+
+SparseMatrix free_part(const SparseMatrix& matrix, std::span<const model::Prescribed> motions) {
+  return free_part(matrix, Split(matrix.rows(), motions));
+}
+
+SparseMatrix relative_damping(const SparseMatrix& damping, const SparseMatrix& stiffness,
+                              std::span<const model::Prescribed> motions) {
+  const Split split(stiffness.rows(), motions);
+  const Matrix held(free_part(stiffness, split));
+  const Eigen::LDLT<Matrix> factor(held);
+  constexpr double least = 1e-14;
+  if (factor.info() != Eigen::Success || !(factor.rcond() > least))
+    throw InvalidInput(
+        "damping by modal_ratio is relative to the supports that a [[displacement]] moves, and without them the "
+        "structure stands by nothing; take damping = { rayleigh = { mass = ..., stiffness = ... } }");
+  Matrix rows = Matrix(given_rows(stiffness, split)).leftCols(split.free());
+  Matrix relative(split.free(), stiffness.rows());  // T, in the order of all
+  const Matrix follows = factor.solve(rows.transpose());
+  for (Index i = 0; i < stiffness.rows(); ++i)
+    relative.col(i) = split.is_free(i) ? Vector(Vector::Unit(split.free(), split.among_free(i)))
+                                       : Vector(follows.col(split.among_given(i)));
+  const Matrix all = relative.transpose() * (damping * relative);
+  return all.sparseView(all.cwiseAbs().maxCoeff(), 1e-15);
+}
+
+}  // namespace rubato::system
