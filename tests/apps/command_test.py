@@ -1,7 +1,9 @@
 """The command as a user meets it: exit status, streams, files. Usage: command_test.py RUBATO EXAMPLES."""
 import csv
+import math
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -117,6 +119,23 @@ class Command(unittest.TestCase):
             self.assertIn("error: ", result.stderr)
             if message:
                 self.assertEqual(result.stderr, message)
+
+    def test_the_bodies_of_a_mechanism_in_space_are_drawn_joined(self):
+        result = self.run_command("run", EXAMPLES / "bricard" / "study.toml", "-o", "out", "--vtk")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        nodes = self.rows("out/motion.nodes.csv")
+        column = nodes[0].index("x [m]")
+        start = [tuple(map(float, row[column:column + 3])) for row in nodes[1:]]
+        bodies = 5
+        pairs = [(i, j) for j in range(bodies, len(start)) for i in range(bodies, j) if math.dist(start[i], start[j]) < 1e-9]
+        self.assertEqual(len(pairs), 4)  # hinges between rods; those with the ground have one point
+        frames = sorted((self.folder / "out/vtk/motion").glob("*.vtp"))
+        self.assertGreater(len(frames), 100)
+        for frame in frames:
+            numbers = re.search(r'Name="points"[^>]*>([^<]*)<', frame.read_text()).group(1).split()
+            points = [tuple(map(float, numbers[3 * i:3 * i + 3])) for i in range(len(start))]
+            for i, j in pairs:  # joined to the error of the interpolation between steps
+                self.assertLess(math.dist(points[i], points[j]), 1e-6, frame.name)
 
     def test_the_study_may_follow_lists_of_names_and_settings(self):
         study = EXAMPLES / "single-mass-slider" / "study.toml"

@@ -102,10 +102,9 @@ void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {
 
 void Mechanism::count_turns(const Vector& before, Vector& q) const {
   Index place = q.size() - static_cast<Index>(model_.turn_counters.size());
-  model::SpaceValue angle;
   for (const model::TurnCounter& counter : model_.turn_counters) {
-    model::evaluate(counter.angle, model::pair_of(q.data(), counter.first, counter.second), angle);
-    q[place] = model::nearest_turn(angle.value, before[place]);
+    const double angle = model::angle_of(counter.angle, model::pair_of(q.data(), counter.first, counter.second));
+    q[place] = model::nearest_turn(angle, before[place]);
     ++place;
   }
 }

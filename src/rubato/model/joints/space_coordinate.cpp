@@ -9,9 +9,9 @@ namespace {
 
 constexpr int k = SpaceCoordinate::tangent_size;
 
-SpaceValue value_of(const SpaceCoordinate& s, const double* q) {
+SpaceValue value_of(const SpaceCoordinate& s, const double* q, SpaceDetail detail) {
   SpaceValue value;
-  evaluate(s.row, pair_of(q, s.first, s.second), value);
+  evaluate(s.row, pair_of(q, s.first, s.second), value, detail);
   return value;
 }
 
@@ -33,26 +33,26 @@ std::vector<Index> SpaceCoordinate::places() const {
 }
 
 double SpaceCoordinate::value(const double* q) const {
-  const double now = value_of(*this, q).value;
+  const double now = value_of(*this, q, SpaceDetail::gradient).value;
   return (counter < 0 ? now : nearest_turn(now, q[counter])) - zero;
 }
 
 void SpaceCoordinate::slope(const double* q, double* slope) const {
   Eigen::Map<Vector12> out(slope);
-  out = value_of(*this, q).gradient;
+  out = value_of(*this, q, SpaceDetail::gradient).gradient;
 }
 
 void SpaceCoordinate::curvature(const double* q, double weight, double* curvature) const {
   Eigen::Map<Eigen::Matrix<double, k, k, Eigen::RowMajor>> out(curvature);
-  out = weight * value_of(*this, q).slope;
+  out = weight * value_of(*this, q, SpaceDetail::slope).slope;
 }
 
 double SpaceCoordinate::rate(const Motion& motion) const {
-  return value_of(*this, motion.q).gradient.dot(part_of(*this, motion.v));
+  return value_of(*this, motion.q, SpaceDetail::gradient).gradient.dot(part_of(*this, motion.v));
 }
 
 double SpaceCoordinate::second_rate(const Motion& motion, const double* acceleration) const {
-  const SpaceValue now = value_of(*this, motion.q);
+  const SpaceValue now = value_of(*this, motion.q, SpaceDetail::slope);
   const Vector12 v = part_of(*this, motion.v);
   return now.gradient.dot(part_of(*this, acceleration)) + v.dot(now.slope * v);
 }

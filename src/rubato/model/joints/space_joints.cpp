@@ -41,7 +41,7 @@ class SpaceJoint final : public Joint {
     const SpacePair pair = pair_of(motion.q, first_, second_);
     SpaceValue value;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value);
+      evaluate_row(i, pair, value, SpaceDetail::gradient);
       g[i] = value.value;
       Eigen::Map<Vector12>(jacobian + i * k) = value.gradient;
     }
@@ -52,7 +52,7 @@ class SpaceJoint final : public Joint {
     sum.setZero();
     SpaceValue value;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value);
+      evaluate_row(i, pair, value, SpaceDetail::slope);
       sum += multiplier[i] * value.slope;
     }
   }
@@ -62,25 +62,25 @@ class SpaceJoint final : public Joint {
     for (int i = 0; i < k; ++i) v[i] = motion.v[places_[static_cast<std::size_t>(i)]];
     SpaceValue value;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value);
+      evaluate_row(i, pair, value, SpaceDetail::slope);
       out[i] = v.dot(value.slope * v);
     }
   }
   bool has_symmetric_curvature() const override { return false; }
 
  private:
-  void evaluate_row(std::size_t i, const SpacePair& pair, SpaceValue& value) const {
-    evaluate(rows_[i], pair, value);
+  void evaluate_row(std::size_t i, const SpacePair& pair, SpaceValue& value, SpaceDetail detail) const {
+    evaluate(rows_[i], pair, value, detail);
     for (const Thread& thread : threads_) {
       if (thread.along != i) continue;
       SpaceValue angle;
-      evaluate(thread.angle, pair, angle);
+      evaluate(thread.angle, pair, angle, detail);
       const double turn = 2.0 * std::numbers::pi, lead_a_radian = thread.lead / turn;
       // The angle is known up to whole turns, which the displacement tells.
       const double turns = std::round((value.value / lead_a_radian - angle.value) / turn);
       value.value -= lead_a_radian * (angle.value + turn * turns);
       value.gradient -= lead_a_radian * angle.gradient;
-      value.slope -= lead_a_radian * angle.slope;
+      if (detail == SpaceDetail::slope) value.slope -= lead_a_radian * angle.slope;
     }
   }
 

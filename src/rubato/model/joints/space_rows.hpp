@@ -27,6 +27,7 @@ struct SpacePair {
   numerics::Matrix3 turn1, turn2;          ///< from body axes to those of the world
   numerics::Vector3 offset1, offset2;      ///< of the points, in body axes [m]
   numerics::Vector3 between;               ///< from the first point to the second, in world axes [m]
+  numerics::Matrix3 relative;              ///< from the axes of the second to those of the first
 };
 SpacePair pair_of(const double* q, const SpacePoint& first, const SpacePoint& second);
 
@@ -54,7 +55,13 @@ struct TurnAngle {
 
 using SpaceRow = std::variant<WorldGap, BodyGap, Alignment, DistanceGap, TurnAngle>;
 
-/// @param result  overwritten
-void evaluate(const SpaceRow& row, const SpacePair& pair, SpaceValue& result);
+/// How much of a SpaceValue is asked for.
+enum class SpaceDetail { gradient, slope };
+
+/// @param result  overwritten; without SpaceDetail::slope its slope stays as it is
+void evaluate(const SpaceRow& row, const SpacePair& pair, SpaceValue& result, SpaceDetail detail = SpaceDetail::slope);
+
+/// The value alone [rad].
+double angle_of(const TurnAngle& row, const SpacePair& pair);
 
 }  // namespace rubato::model
