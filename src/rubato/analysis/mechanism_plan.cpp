@@ -1,4 +1,5 @@
 #include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
@@ -26,6 +27,17 @@ system::State assembled(const Location& where, const system::Mechanism& mechanis
   system::MechanismEquations equations(mechanism);
   const auto start = integrate::make_consistent(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
+  if (start.is_assembled && start.worst_rate >= 0) {
+    std::vector<std::string> drives;
+    for (const auto& drive : mechanism.model().drives) drives.push_back(fmt::format("\"{}\"", drive.name));
+    throw InvalidInput(
+        where,
+        fmt::format("drives contradict each other or the joints: all hold at the start, but at once \"{}\" would "
+                    "come apart at {:.4g} m/s or rad/s; leave one of the drives of {} out, or let it say what the "
+                    "others make of it",
+                    mechanism.rows()[static_cast<std::size_t>(start.worst_rate)], start.gap_rate,
+                    fmt::join(drives, ", ")));
+  }
   if (start.is_assembled && !start.is_consistent) {
     equations.go_to(start.state, model::Side::right);
     const std::string part = equations.non_finite_part();
@@ -48,16 +60,22 @@ system::State assembled(const Location& where, const system::Mechanism& mechanis
                     "{:.4g}",
                     coordinate(start.most_moved), start.position_moved));
   if (start.most_changed >= 0)
-    warnings.push_back(
-        fmt::format("the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
-                    "{:.4g}, which took {:.4g} J",
-                    coordinate(start.most_changed), start.velocity_changed, start.energy_lost));
+    warnings.push_back(fmt::format(
+        "the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
+        "{:.4g}, which {} {:.4g} J",
+        coordinate(start.most_changed), start.velocity_changed, start.energy_lost >= start.drive_work ? "took" : "gave",
+        std::abs(start.energy_lost - start.drive_work)));
   if (!start.redundant.empty())
     warnings.push_back(
         fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
                     "least ones are given",
                     row_names(start.redundant, mechanism), start.redundant.size() == 1 ? "s" : ""));
-  return start.state;
+  system::State state = start.state;
+  if (!integrate::settle_new_velocities(equations, state))
+    throw InvalidInput(where,
+                       "no accelerations were found at the start that go with the friction of the joints: with "
+                       "so large a coefficient their reactions grow without bound; take a smaller one");
+  return state;
 }
 
 Index find(const std::string& name, const Location& where, const system::Mechanism& mechanism) {
@@ -170,6 +188,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   MechanismPlan plan;
   TransientPlan& transient = plan.transient;
   plan.allow_unstable = description.allow_unstable;
+  plan.project_velocities = description.project_velocities;
   transient.method = method_of(description.method, parameters);
   try {
     (void)integrate::make_mechanism_stepper(transient.method, mechanism, {}, plan.allow_unstable);
@@ -199,8 +218,10 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                                      transient.duration / step, step));
     transient.automatic = fixed_step(step, transient.duration);
   }
-  for (const auto& force : mechanism.model().forces) {
-    const auto* table = std::get_if<model::TableLaw>(&force.law);
+  std::vector<const model::TableLaw*> tables;
+  for (const auto& force : mechanism.model().forces) tables.push_back(std::get_if<model::TableLaw>(&force.law));
+  for (const auto& drive : mechanism.model().drives) tables.push_back(std::get_if<model::TableLaw>(&drive.law));
+  for (const auto* table : tables) {
     if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
     if (table->times.front() <= 0.0 && table->times.back() >= transient.duration * (1.0 - 1e-12)) continue;
     throw InvalidInput(where,

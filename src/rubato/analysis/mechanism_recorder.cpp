@@ -30,6 +30,15 @@ std::vector<std::string> sliding_joints(const system::Mechanism& mechanism) {
   return names;
 }
 
+/// The frictions of angles, or of displacements.
+std::vector<std::size_t> frictions_of(const system::Mechanism& mechanism, bool is_angle) {
+  std::vector<std::size_t> all;
+  const auto& frictions = mechanism.model().frictions;
+  for (std::size_t i = 0; i < frictions.size(); ++i)
+    if ((frictions[i].s.kind == Kind::angle) == is_angle) all.push_back(i);
+  return all;
+}
+
 /// Extends a vector of coordinates by the differences that the angles of joints are.
 void add_angles(const system::Mechanism& mechanism, const Vector& of_coordinates, Vector& out) {
   out.head(of_coordinates.size()) = of_coordinates;
@@ -70,7 +79,9 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                              scalar("strain", "J", "strain energy of beams, springs and elastic locks"),
                              scalar("damper_dissipated", "J", "dissipated by the dampers since the start"),
                              scalar("lock_dissipated", "J", "kinetic energy that rigid locks took since the start"),
-                             scalar("load_work", "J", "work of loads, gravity and drives since the start"),
+                             scalar("friction_dissipated", "J", "dissipated by the friction of joints since the start"),
+                             scalar("load_work", "J", "work of loads, gravity and laws of joints since the start"),
+                             scalar("drive_work", "J", "work of the drives that prescribe motions since the start"),
                              scalar("residue", "J", "what the method itself made (+) or lost (-)")},
                             {{"type", "energy"}}});
 }
@@ -82,6 +93,10 @@ void MechanismRecorder::add_joints(results::TableLayout& layout) {
   Index row = 0;
   for (const auto& joint : mechanism_.model().joints)
     for (const std::string& name : joint->row_names()) {
+      if (name.starts_with("friction")) {  // of one that sticks; what slides has no row
+        ++row;
+        continue;
+      }
       auto found =
           std::find_if(reactions_.begin(), reactions_.end(), [&](const Reaction& r) { return r.name == name; });
       if (found == reactions_.end()) found = reactions_.insert(found, Reaction{name, {}, {}, -1.0});
@@ -89,11 +104,26 @@ void MechanismRecorder::add_joints(results::TableLayout& layout) {
       found->rows.push_back(row++);
     }
   for (Reaction& reaction : reactions_) {
-    const bool is_tension = reaction.name == "tension", is_moment = reaction.name == "moment";
+    const bool is_tension = reaction.name == "tension", is_drive = reaction.name.starts_with("drive");
+    const bool is_moment = reaction.name.ends_with("moment");
     if (is_tension) reaction.sign = 1.0;
+    if (is_drive) {
+      layout.blocks.push_back({reaction.name, is_moment ? "N m" : "N", "what each drive gives, + on the second part",
+                               reaction.name + "_joint", reaction.joints});
+      continue;
+    }
     layout.blocks.push_back({"reaction_" + reaction.name, is_moment ? "N m" : "N",
                              is_tension ? "tension of each link" : "what each joint does to its second part",
                              "reaction_" + reaction.name + "_joint", reaction.joints});
+  }
+  for (const bool is_angle : {true, false}) {
+    std::vector<std::string> joints;
+    for (const std::size_t i : frictions_of(mechanism_, is_angle))
+      joints.push_back(mechanism_.model().frictions[i].name);
+    const std::string variable = is_angle ? "friction_moment" : "friction_force";
+    if (!joints.empty())
+      layout.blocks.push_back({variable, is_angle ? "N m" : "N", "what friction does to the second part of each joint",
+                               variable + "_joint", joints});
   }
 }
 
@@ -117,30 +147,44 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
     if (joint.s.kind == Kind::displacement) row_.push_back(joint.s.value(state.q.data()));
   for (const Reaction& reaction : reactions_)
     for (const Index row : reaction.rows) row_.push_back(reaction.sign * balanced_.multiplier[row]);
+  equations_.go_to(balanced_, model::Side::right);
+  for (const bool is_angle : {true, false})
+    for (const std::size_t i : frictions_of(mechanism_, is_angle))
+      row_.push_back(equations_.friction_force(i, balanced_.multiplier));
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;
-  const std::array<double, 7> ledger{
-      state.t,           energy->kinetic,  energy->strain, energy->damper_dissipated, energy->lock_dissipated,
-      energy->load_work, energy->residue()};
+  const std::array<double, 9> ledger{state.t,
+                                     energy->kinetic,
+                                     energy->strain,
+                                     energy->damper_dissipated,
+                                     energy->lock_dissipated,
+                                     energy->friction_dissipated,
+                                     energy->load_work,
+                                     energy->drive_work,
+                                     energy->residue()};
   energy_rows_->append(ledger);
 }
 
 void write_events(const std::string& name, const std::vector<integrate::LockEvent>& events,
                   const system::Mechanism& mechanism, results::Sink& sink) {
-  if (mechanism.model().locks.empty()) return;
+  const auto& locks = mechanism.model().locks;
+  if (locks.empty() && mechanism.model().frictions.empty()) return;
   std::vector<std::string> joints;
-  for (const auto& lock : mechanism.model().locks) joints.push_back(lock.name);
+  for (const auto& lock : locks) joints.push_back(lock.name);
+  for (const auto& friction : mechanism.model().frictions) joints.push_back(friction.name);
   const auto rows = sink.open({name,
                                "events",
                                "time",
                                {scalar("time", "s", "when it happened"),
-                                {"joint", "1", "whose lock", "", {}, joints},
-                                {"event", "1", "what it did", "", {}, {"released", "engaged"}},
+                                {"joint", "1", "whose lock or friction", "", {}, joints},
+                                {"event", "1", "what it did", "", {}, {"released", "engaged", "slips", "sticks"}},
                                 scalar("energy_lost", "J", "kinetic energy that the lock took")},
                                {{"type", "events"}}});
   for (const auto& event : events) {
-    const std::array<double, 4> row{event.t, static_cast<double>(event.lock), event.has_engaged ? 1.0 : 0.0,
+    const bool is_friction = event.friction >= 0;
+    const double part = is_friction ? static_cast<double>(locks.size()) + event.friction : event.lock;
+    const std::array<double, 4> row{event.t, part, (is_friction ? 2.0 : 0.0) + (event.has_engaged ? 1.0 : 0.0),
                                     event.energy_lost};
     rows->append(row);
   }

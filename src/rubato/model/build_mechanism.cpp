@@ -31,10 +31,7 @@ class MechanismBuilder {
     for (const BodyDescription& body : description_.bodies) take_body(body);
     for (const JointDescription& joint : description_.joints) take_joint(joint);
     take_springs();
-    for (const ForceDescription& force : description_.forces)
-      mechanism_.forces.push_back(
-          {free_coordinate(force.on, force.where, "a force is on"),
-           build_time_law(force.law, parameters_, fmt::format("the force on \"{}\"", force.on))});
+    for (const ForceDescription& force : description_.forces) take_force(force);
     if (description_.gravity) take_gravity(*description_.gravity);
     take_reference();
     return std::move(mechanism_);
@@ -194,6 +191,24 @@ class MechanismBuilder {
     inertia_ += inertia;
   }
 
+  void take_force(const ForceDescription& force) {
+    const std::string part = fmt::format("the force on \"{}\"", force.on);
+    const Index coordinate = free_coordinate(force.on, force.where, "a force is on");
+    const TimeLaw law = build_time_law(force.law, parameters_, part);
+    for (std::size_t i = 0; force.follows && i < mechanism_.nodes.size(); ++i)
+      for (const std::size_t axis : {0u, 1u}) {
+        if (mechanism_.nodes[i].place[axis] != coordinate) continue;
+        const auto node = static_cast<Index>(i);
+        const auto& numbers = mechanism_.nodes[i].numbers;
+        const std::array<double, 2> at = force.at.empty() ? std::array<double, 2>{numbers[0], numbers[1]}
+                                                          : point(force.at, force.at_where, part + ": at");
+        mechanism_.add_following_force(part, mechanism_.plane_point(node, at[0], at[1]), axis, law);
+        return;
+      }
+    // A moment of the plane is the same however its node turns.
+    mechanism_.forces.push_back({coordinate, law});
+  }
+
   struct End {
     Index node = 0;
     bool is_ground = false;
@@ -315,6 +330,8 @@ class MechanismBuilder {
         q[static_cast<Index>(i) * plane_numbers + static_cast<Index>(k)] = mechanism_.nodes[i].numbers[k];
     s.zero = s.value(q.data()) - value;
     mechanism_.joint_coordinates.push_back({joint.name, s});
+    if (joint.motion) take_motion(joint, part, s, value);
+    if (joint.friction) take_friction(joint, part, s);
     AtLock drive;
     if (joint.lock) {
       const Lock lock = lock_of(joint, part, s, value);
@@ -339,6 +356,74 @@ class MechanismBuilder {
     if (joint.damping)
       mechanism_.elements.push_back(
           make_joint_damper(joint.name, s, at_least_zero(*joint.damping, part + ": damping")));
+  }
+
+  /// The drive that moves a joint's coordinate.
+  /// @param value  of the coordinate in the configuration given
+  void take_motion(const JointDescription& joint, const std::string& part, const PlaneCoordinate& s, double value) {
+    const DriveDescription& drive = *joint.motion;
+    if (joint.lock)
+      throw InvalidInput(
+          joint.lock->where,
+          fmt::format("{} has a drive and a lock: what is driven cannot lock; leave one out, or drive it "
+                      "by a {}",
+                      part, s.kind == PlaneCoordinate::Kind::angle ? "moment" : "force"));
+    const MotionLaw law = build_motion_law(drive, part);
+    const numerics::TimeDerivatives start = derivatives(law, 0.0, Side::right);
+    if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
+      throw InvalidInput(drive.where, fmt::format("{}: the drive has no finite value, rate and second rate at t = 0 "
+                                                  "({}, {}, {})",
+                                                  part, start.value, start.rate, start.second_rate));
+    if (s.kind == PlaneCoordinate::Kind::angle && !(std::abs(start.value - value) <= largest_angle))
+      throw InvalidInput(drive.where,
+                         fmt::format("{}: the drive starts at {} rad, more than a turn away from the angle {} of the "
+                                     "configuration given; if degrees are meant, write \"... * pi/180\"",
+                                     part, start.value, value));
+    mechanism_.add_drive(joint.name, s, law);
+  }
+
+  /// The friction on a joint's coordinate.
+  void take_friction(const JointDescription& joint, const std::string& part, const PlaneCoordinate& s) {
+    const FrictionDescription& given = *joint.friction;
+    if (joint.motion)
+      throw InvalidInput(given.where,
+                         fmt::format("{} has a drive and friction: while the drive stands still nothing says "
+                                     "what each of them holds; give the friction to another joint, or "
+                                     "drive it by a {}",
+                                     part, s.kind == PlaneCoordinate::Kind::angle ? "moment" : "force"));
+    JointFriction friction;
+    friction.name = joint.name;
+    friction.s = s;
+    friction.joint = static_cast<int>(mechanism_.joints.size()) - 1;
+    friction.coefficient = at_least_zero(given.coefficient, part + ": friction: coefficient");
+    if (given.radius) friction.coefficient *= positive(*given.radius, part + ": friction: radius");
+    if (given.preload)
+      friction.preload = at_least_zero(*given.preload, part + ": friction: preload");
+    else
+      friction.pressing_rows = s.kind == PlaneCoordinate::Kind::angle ? 2 : 1;
+    mechanism_.add_friction(std::move(friction));
+  }
+
+  MotionLaw build_motion_law(const DriveDescription& drive, const std::string& part) const {
+    if (const auto* formula = std::get_if<TimeFormulaDescription>(&drive.law)) {
+      try {
+        return numerics::TimeFormula(formula->formula.expression, parameters_);
+      } catch (const InvalidInput& fault) {
+        throw InvalidInput(drive.where, fmt::format("{}: drive: {}", part, fault.message()));
+      }
+    }
+    const TimeLaw law = build_time_law(std::get<TableDescription>(drive.law), parameters_, part + ": drive");
+    const auto& table = std::get<TableLaw>(law);
+    if (table.beyond == TableLaw::Beyond::zero)
+      throw InvalidInput(drive.where, fmt::format("{}: drive: beyond = \"zero\" would make it jump; take \"hold\", or "
+                                                  "extend the table \"{}\"",
+                                                  part, table.source));
+    for (std::size_t i = 1; i < table.times.size(); ++i)
+      if (!(table.times[i] > table.times[i - 1]))
+        throw InvalidInput(drive.where, fmt::format("{}: drive: the table \"{}\" jumps at t = {} s, and nothing moves "
+                                                    "from one place to another at once; give its rows a time between",
+                                                    part, table.source, table.times[i]));
+    return table;
   }
 
   Lock lock_of(const JointDescription& joint, const std::string& part, const PlaneCoordinate& s, double value) const {

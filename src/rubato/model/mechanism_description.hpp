@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/model/quantity.hpp>
+#include <rubato/model/time_law_description.hpp>
 
 #include <array>
 #include <optional>
@@ -29,6 +30,20 @@ struct LockDescription {
   Location where;
 };
 
+/// How a joint's coordinate moves, whatever it takes [rad] or [m].
+struct DriveDescription {
+  std::variant<TimeFormulaDescription, TableDescription> law;
+  Location where;
+};
+
+/// Coulomb friction on a joint's coordinate, mu N; of an angle mu N radius.
+struct FrictionDescription {
+  Quantity coefficient;             ///< [-]
+  std::optional<Quantity> preload;  ///< N [N]; unless given it is the joint's own reaction
+  std::optional<Quantity> radius;   ///< of the pin of a revolute joint [m]
+  Location where;
+};
+
 struct JointDescription {
   enum class Type { rigid, revolute, prismatic, distance };
   std::string name;
@@ -42,9 +57,11 @@ struct JointDescription {
   Location axis_where;
   std::optional<Quantity> value;   ///< of its angle or displacement in the configuration given [rad] or [m]
   std::optional<Quantity> length;  ///< of a distance [m]; as the points lie unless given
-  std::optional<Quantity> drive;   ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`
+  std::optional<DriveDescription> motion;
+  std::optional<Quantity> drive;  ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`
   std::optional<Quantity> stiffness, rest, damping;  ///< of a spring and a damper on its coordinate
   std::optional<LockDescription> lock;
+  std::optional<FrictionDescription> friction;
   Location where;
 };
 
