@@ -113,7 +113,8 @@ function hysteresis_loops(table, force) {
 
 // Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
 const ledger_panels = [
-  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated"], domain: [0.60, 1.0]},
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated",
+    "friction_dissipated", "drive_work"], domain: [0.60, 1.0]},
   {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored"], domain: [0.24, 0.54]},
   {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
 ];

@@ -1,0 +1,394 @@
+#include <rubato/core/error.hpp>
+#include <rubato/numerics/time_formula.hpp>
+
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <utility>
+
+namespace rubato::numerics {
+namespace {
+
+using D = TimeDerivatives;
+
+D product(const D& a, const D& b) {
+  return {a.value * b.value, a.rate * b.value + a.value * b.rate,
+          a.second_rate * b.value + 2.0 * a.rate * b.rate + a.value * b.second_rate};
+}
+
+D quotient(const D& a, const D& b) {
+  D result;
+  result.value = a.value / b.value;
+  result.rate = (a.rate - result.value * b.rate) / b.value;
+  result.second_rate = (a.second_rate - 2.0 * result.rate * b.rate - result.value * b.second_rate) / b.value;
+  return result;
+}
+
+/// f(a), with f and its derivatives at a.
+D chain(const D& f, const D& a) {
+  return {f.value, f.rate * a.rate, f.second_rate * a.rate * a.rate + f.rate * a.second_rate};
+}
+
+D power(const D& a, const D& b) {
+  const double value = std::pow(a.value, b.value);
+  if (b.rate == 0.0 && b.second_rate == 0.0) {
+    const double n = b.value;
+    // A factor of zero rules, whatever a negative power of zero is.
+    const double first = n == 0.0 ? 0.0 : n * std::pow(a.value, n - 1.0);
+    const double second = n == 0.0 || n == 1.0 ? 0.0 : n * (n - 1.0) * std::pow(a.value, n - 2.0);
+    return chain({value, first, second}, a);
+  }
+  const double log = std::log(a.value);
+  const D exponent = product(b, chain({log, 1.0 / a.value, -1.0 / (a.value * a.value)}, a));
+  return {value, value * exponent.rate, value * (exponent.rate * exponent.rate + exponent.second_rate)};
+}
+
+D atan2_of(const D& y, const D& x) {
+  // d/dt atan2(y, x) = (y' x - y x')/(x^2 + y^2)
+  const double square = x.value * x.value + y.value * y.value;
+  const double turning = y.rate * x.value - y.value * x.rate;
+  const double rate = turning / square;
+  return {std::atan2(y.value, x.value), rate,
+          (y.second_rate * x.value - y.value * x.second_rate - 2.0 * rate * (x.value * x.rate + y.value * y.rate)) /
+              square};
+}
+
+using Entry = std::pair<const char*, D (*)(double)>;
+const std::array<Entry, 20> functions{{
+    {"sin",
+     [](double x) {
+       return D{std::sin(x), std::cos(x), -std::sin(x)};
+     }},
+    {"cos",
+     [](double x) {
+       return D{std::cos(x), -std::sin(x), -std::cos(x)};
+     }},
+    {"tan",
+     [](double x) {
+       const double f = std::tan(x), first = 1.0 + f * f;
+       return D{f, first, 2.0 * f * first};
+     }},
+    {"asin",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(1.0 - x * x);
+       return D{std::asin(x), first, x * first * first * first};
+     }},
+    {"acos",
+     [](double x) {
+       const double first = -1.0 / std::sqrt(1.0 - x * x);
+       return D{std::acos(x), first, x * first * first * first};
+     }},
+    {"atan",
+     [](double x) {
+       const double first = 1.0 / (1.0 + x * x);
+       return D{std::atan(x), first, -2.0 * x * first * first};
+     }},
+    {"sinh",
+     [](double x) {
+       return D{std::sinh(x), std::cosh(x), std::sinh(x)};
+     }},
+    {"cosh",
+     [](double x) {
+       return D{std::cosh(x), std::sinh(x), std::cosh(x)};
+     }},
+    {"tanh",
+     [](double x) {
+       const double f = std::tanh(x), first = 1.0 - f * f;
+       return D{f, first, -2.0 * f * first};
+     }},
+    {"asinh",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(x * x + 1.0);
+       return D{std::asinh(x), first, -x * first * first * first};
+     }},
+    {"acosh",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(x * x - 1.0);
+       return D{std::acosh(x), first, -x * first * first * first};
+     }},
+    {"atanh",
+     [](double x) {
+       const double first = 1.0 / (1.0 - x * x);
+       return D{std::atanh(x), first, 2.0 * x * first * first};
+     }},
+    {"log2",
+     [](double x) {
+       return D{std::log2(x), std::numbers::log2e / x, -std::numbers::log2e / (x * x)};
+     }},
+    {"log10",
+     [](double x) {
+       return D{std::log10(x), std::numbers::log10e / x, -std::numbers::log10e / (x * x)};
+     }},
+    {"log",
+     [](double x) {
+       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
+     }},
+    {"ln",
+     [](double x) {
+       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
+     }},
+    {"exp",
+     [](double x) {
+       return D{std::exp(x), std::exp(x), std::exp(x)};
+     }},
+    {"sqrt",
+     [](double x) {
+       const double f = std::sqrt(x);
+       return D{f, 0.5 / f, -0.25 / (f * x)};
+     }},
+    {"sign",
+     [](double x) {
+       return D{x < 0.0 ? -1.0 : x > 0.0 ? 1.0 : 0.0, 0.0, 0.0};
+     }},
+    {"abs",
+     [](double x) {
+       return D{std::abs(x), x < 0.0 ? -1.0 : 1.0, 0.0};
+     }},
+}};
+
+D rounded(double x) { return {std::floor(x + 0.5), 0.0, 0.0}; }
+D truth(bool is_true) { return {is_true ? 1.0 : 0.0, 0.0, 0.0}; }
+
+}  // namespace
+
+/// Descends through a text that Expression has accepted, by muParser's precedences: `? :`, ||, &&, comparisons, + -,
+/// * / and signs, ^ (from the right).
+class TimeFormulaParser {
+ public:
+  using Kind = TimeFormula::Kind;
+  using Node = TimeFormula::Node;
+
+  TimeFormulaParser(TimeFormula& formula, const Parameters& parameters)
+      : formula_(formula), text_(formula.text_), parameters_(parameters) {}
+
+  void parse() {
+    (void)choice();
+    if (!is_at_end()) refuse();
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    throw InvalidInput("the derivative of \"" + text_ + "\" with respect to t is not known from character " +
+                       std::to_string(at_ + 1) + " on; give the values in a table");
+  }
+  int add(Kind kind, int first = -1, int second = -1, int third = -1) {
+    Node node;
+    node.kind = kind;
+    node.first = first;
+    node.second = second;
+    node.third = third;
+    formula_.nodes_.push_back(node);
+    return static_cast<int>(formula_.nodes_.size()) - 1;
+  }
+  int add_constant(double value) {
+    const int node = add(Kind::constant);
+    formula_.nodes_.back().constant = value;
+    return node;
+  }
+
+  void skip_blanks() {
+    while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
+  }
+  bool is_at_end() {
+    skip_blanks();
+    return at_ == text_.size();
+  }
+  bool takes(const std::string& token) {
+    skip_blanks();
+    if (text_.compare(at_, token.size(), token) != 0) return false;
+    at_ += token.size();
+    return true;
+  }
+  void require(const std::string& token) {
+    if (!takes(token)) refuse();
+  }
+
+  int choice() {
+    const int condition = either();
+    if (!takes("?")) return condition;
+    const int yes = choice();
+    require(":");
+    const int no = choice();
+    return add(Kind::choice, condition, yes, no);
+  }
+  int either() {
+    int node = both();
+    while (takes("||")) {
+      const int other = both();
+      node = add(Kind::either, node, other);
+    }
+    return node;
+  }
+  int both() {
+    int node = comparison();
+    while (takes("&&")) {
+      const int other = comparison();
+      node = add(Kind::both, node, other);
+    }
+    return node;
+  }
+  int comparison() {
+    static const std::array<std::pair<const char*, Kind>, 6> kinds{{{"<=", Kind::less_or_equal},
+                                                                    {">=", Kind::greater_or_equal},
+                                                                    {"==", Kind::equal},
+                                                                    {"!=", Kind::unequal},
+                                                                    {"<", Kind::less},
+                                                                    {">", Kind::greater}}};
+    int node = sum();
+    for (bool goes_on = true; goes_on;) {
+      goes_on = false;
+      for (const auto& [token, kind] : kinds) {
+        if (!takes(token)) continue;
+        const int other = sum();
+        node = add(kind, node, other);
+        goes_on = true;
+        break;
+      }
+    }
+    return node;
+  }
+  int sum() {
+    int node = term();
+    for (;;) {
+      const bool is_plus = takes("+");
+      if (!is_plus && !takes("-")) return node;
+      const int other = term();
+      node = add(is_plus ? Kind::sum : Kind::difference, node, other);
+    }
+  }
+  int term() {
+    int node = with_sign();
+    for (;;) {
+      const bool is_times = takes("*");
+      if (!is_times && !takes("/")) return node;
+      const int other = with_sign();
+      node = add(is_times ? Kind::product : Kind::quotient, node, other);
+    }
+  }
+  int with_sign() {
+    if (takes("-")) {
+      const int node = with_sign();
+      return add(Kind::negative, node);
+    }
+    if (takes("+")) return with_sign();
+    const int base = primary();
+    if (!takes("^")) return base;
+    const int exponent = with_sign();
+    return add(Kind::power, base, exponent);
+  }
+  int primary() {
+    if (takes("(")) {
+      const int node = choice();
+      require(")");
+      return node;
+    }
+    skip_blanks();
+    if (at_ < text_.size() && (std::isdigit(static_cast<unsigned char>(text_[at_])) || text_[at_] == '.')) {
+      char* end = nullptr;
+      const double value = std::strtod(text_.c_str() + at_, &end);
+      at_ = static_cast<std::size_t>(end - text_.c_str());
+      return add_constant(value);
+    }
+    const std::size_t start = at_;
+    while (at_ < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_')) ++at_;
+    const std::string name = text_.substr(start, at_ - start);
+    if (name.empty()) refuse();
+    if (takes("(")) return call(name, start);
+    if (name == "t") return add(Kind::time);
+    if (name == "pi") return add_constant(std::numbers::pi);
+    for (const auto& [known, value] : parameters_)
+      if (known == name) return add_constant(value);
+    at_ = start;
+    refuse();
+  }
+  int call(const std::string& name, std::size_t start) {
+    std::vector<int> arguments{choice()};
+    while (takes(",")) arguments.push_back(choice());
+    require(")");
+    const auto fold = [&](Kind kind) {
+      int node = arguments.front();
+      for (std::size_t i = 1; i < arguments.size(); ++i) node = add(kind, node, arguments[i]);
+      return node;
+    };
+    if (name == "min") return fold(Kind::least);
+    if (name == "max") return fold(Kind::greatest);
+    if (name == "sum") return fold(Kind::sum);
+    if (name == "avg") {
+      const int total = fold(Kind::sum);
+      const int count = add_constant(static_cast<double>(arguments.size()));
+      return add(Kind::quotient, total, count);
+    }
+    if (name == "atan2" && arguments.size() == 2) return add(Kind::angle, arguments[0], arguments[1]);
+    TimeFormula::Function function = name == "rint" ? &rounded : nullptr;
+    for (const auto& [known, of] : functions)
+      if (name == known) function = of;
+    if (!function || arguments.size() != 1) {
+      at_ = start;
+      refuse();
+    }
+    const int node = add(Kind::function, arguments[0]);
+    formula_.nodes_.back().function = function;
+    return node;
+  }
+
+  TimeFormula& formula_;
+  const std::string& text_;
+  const Parameters& parameters_;
+  std::size_t at_ = 0;
+};
+
+TimeFormula::TimeFormula(std::string text, const Parameters& parameters) : text_(std::move(text)) {
+  (void)Expression(text_, parameters, true);  // says what is wrong
+  TimeFormulaParser(*this, parameters).parse();
+}
+
+TimeDerivatives TimeFormula::operator()(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t); }
+
+TimeDerivatives TimeFormula::at(int index, double t) const {
+  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  if (node.kind == Kind::constant) return {node.constant, 0.0, 0.0};
+  if (node.kind == Kind::time) return {t, 1.0, 0.0};
+  const D a = at(node.first, t);
+  if (node.kind == Kind::negative) return {-a.value, -a.rate, -a.second_rate};
+  if (node.kind == Kind::function) return chain(node.function(a.value), a);
+  if (node.kind == Kind::choice) return at(a.value != 0.0 ? node.second : node.third, t);
+  const D b = at(node.second, t);
+  switch (node.kind) {
+    case Kind::sum:
+      return {a.value + b.value, a.rate + b.rate, a.second_rate + b.second_rate};
+    case Kind::difference:
+      return {a.value - b.value, a.rate - b.rate, a.second_rate - b.second_rate};
+    case Kind::product:
+      return product(a, b);
+    case Kind::quotient:
+      return quotient(a, b);
+    case Kind::power:
+      return power(a, b);
+    case Kind::angle:
+      return atan2_of(a, b);
+    case Kind::least:
+      return b.value < a.value ? b : a;
+    case Kind::greatest:
+      return b.value > a.value ? b : a;
+    case Kind::less:
+      return truth(a.value < b.value);
+    case Kind::less_or_equal:
+      return truth(a.value <= b.value);
+    case Kind::greater:
+      return truth(a.value > b.value);
+    case Kind::greater_or_equal:
+      return truth(a.value >= b.value);
+    case Kind::equal:
+      return truth(a.value == b.value);
+    case Kind::unequal:
+      return truth(a.value != b.value);
+    case Kind::both:
+      return truth(a.value != 0.0 && b.value != 0.0);
+    default:
+      return truth(a.value != 0.0 || b.value != 0.0);
+  }
+}
+
+}  // namespace rubato::numerics
