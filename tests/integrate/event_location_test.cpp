@@ -191,8 +191,8 @@ struct Accumulation final : Timeline {
 
   std::vector<double> breakpoints(double from, double to) const override { return structure.breakpoints(from, to); }
   bool jumps_at(double t) override { return structure.jumps_at(t); }
-  void restart(system::State& state) override { structure.restart(state); }
-  bool pass(const system::State&, system::State&, double) override { return false; }
+  bool restart(system::State& state) override { return structure.restart(state); }
+  Passage pass(const system::State&, system::State&, double) override { return Passage::continues; }
   double resolution() const override { return 1e-12; }
   Crossing first_crossing(const system::State& from, const system::State& to, double least) override {
     for (Index k = 1; k < 60; ++k) {

@@ -100,7 +100,7 @@ def mutations(study):
                 yield f"{name}: no {key}", changed(lambda t: t.pop(key))
 
 
-FLAGS = ("energy", "allow_unstable", "as_printed")
+FLAGS = ("energy", "allow_unstable", "as_printed", "following", "project_velocities")
 
 
 def keys_of(node):

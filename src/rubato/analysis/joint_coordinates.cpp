@@ -39,7 +39,13 @@ void JointCoordinates::add_displacements(results::TableLayout& layout) const {
 void JointCoordinates::go_to(const system::State& state) {
   state_ = &state;
   std::copy(state.v.data(), state.v.data() + state.v.size(), velocity_.data() + 1);
-  motion_ = {state.t, model::Side::left, state.q.data(), velocity_.data() + 1, state.phase.data()};
+  motion_ = {state.t,
+             model::Side::left,
+             state.q.data(),
+             velocity_.data() + 1,
+             state.phase.data(),
+             state.rubbing.data(),
+             state.stuck_at.data()};
 }
 
 void JointCoordinates::positions(Vector& out) {

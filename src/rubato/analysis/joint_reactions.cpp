@@ -9,6 +9,11 @@ namespace {
 /// Of a reaction in space.
 constexpr std::array<const char*, 6> components{"x", "y", "z", "moment_x", "moment_y", "moment_z"};
 
+bool is_drive(const std::string& row) { return row.starts_with("drive"); }
+
+/// Of a joint that sticks: what friction does is told by JointFrictions, for one that slides has no such row.
+bool is_friction(const std::string& row) { return row.starts_with("friction"); }
+
 }  // namespace
 
 JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(mechanism) {
@@ -16,21 +21,29 @@ JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(
   for (const auto& joint : mechanism.model().joints) {
     first_row_.push_back(row);
     for (const std::string& name : joint->row_names()) {
-      auto found = std::find_if(plane_.begin(), plane_.end(), [&](const Plane& r) { return r.name == name; });
-      if (found == plane_.end()) found = plane_.insert(found, Plane{name, {}, {}, name == "tension" ? 1.0 : -1.0});
+      const Index place = row++;
+      if (is_friction(name) || (mechanism.model().dimension == 3 && !is_drive(name))) continue;
+      auto found = std::find_if(rows_.begin(), rows_.end(), [&](const Rows& r) { return r.name == name; });
+      if (found == rows_.end()) found = rows_.insert(found, Rows{name, {}, {}, name == "tension" ? 1.0 : -1.0});
       found->joints.push_back(joint->name());
-      found->rows.push_back(row++);
+      found->places.push_back(place);
     }
   }
 }
 
 void JointReactions::add(results::TableLayout& layout) const {
-  if (mechanism_.model().dimension == 3) return add_space(layout);
-  for (const Plane& reaction : plane_)
-    layout.blocks.push_back(
-        {"reaction_" + reaction.name, reaction.name == "moment" ? "N m" : "N",
-         reaction.name == "tension" ? "tension of each link" : "what each joint does to its second part",
-         "reaction_" + reaction.name + "_joint", reaction.joints});
+  if (mechanism_.model().dimension == 3) add_space(layout);
+  for (const Rows& reaction : rows_) {
+    const std::string unit = reaction.name.ends_with("moment") ? "N m" : "N";
+    if (is_drive(reaction.name))
+      layout.blocks.push_back({reaction.name, unit, "what each drive gives, + on the second part",
+                               reaction.name + "_joint", reaction.joints});
+    else
+      layout.blocks.push_back(
+          {"reaction_" + reaction.name, unit,
+           reaction.name == "tension" ? "tension of each link" : "what each joint does to its second part",
+           "reaction_" + reaction.name + "_joint", reaction.joints});
+  }
 }
 
 void JointReactions::add_space(results::TableLayout& layout) const {
@@ -48,9 +61,9 @@ void JointReactions::add_space(results::TableLayout& layout) const {
 }
 
 void JointReactions::append(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {
-  if (mechanism_.model().dimension == 3) return append_space(motion, multiplier, row);
-  for (const Plane& reaction : plane_)
-    for (const Index i : reaction.rows) row.push_back(reaction.sign * multiplier[i]);
+  if (mechanism_.model().dimension == 3) append_space(motion, multiplier, row);
+  for (const Rows& reaction : rows_)
+    for (const Index i : reaction.places) row.push_back(reaction.sign * multiplier[i]);
 }
 
 void JointReactions::append_space(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {

@@ -10,7 +10,8 @@ namespace rubato::analysis {
 
 /// The reactions of the joints of a mechanism as columns of results: what a joint does to its second part (to its first
 /// the opposite); a tension pulls. In the plane they are its multipliers, by the names of their rows; in space a force
-/// and a moment about the point where the joint holds its second part, by the axes of the world.
+/// and a moment about the point where the joint holds its second part, by the axes of the world. What a drive gives
+/// stands beside them, by the coordinate that it moves.
 class JointReactions {
  public:
   explicit JointReactions(const system::Mechanism& mechanism);
@@ -20,11 +21,11 @@ class JointReactions {
   void append(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row);
 
  private:
-  /// Rows of constraints that bear one name, "x" or "moment".
-  struct Plane {
+  /// Rows of constraints that bear one name, "x" or "drive_moment"; in space those of drives only.
+  struct Rows {
     std::string name;
     std::vector<std::string> joints;
-    std::vector<Index> rows;
+    std::vector<Index> places;
     double sign = -1.0;
   };
   void add_space(results::TableLayout& layout) const;
@@ -34,7 +35,7 @@ class JointReactions {
                                const Vector& multiplier);
 
   const system::Mechanism& mechanism_;
-  std::vector<Plane> plane_;
+  std::vector<Rows> rows_;
   std::vector<Index> first_row_;  // of each joint
   std::vector<double> constraint_, jacobian_;
 };

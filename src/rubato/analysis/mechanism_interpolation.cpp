@@ -22,7 +22,8 @@ void MechanismInterpolation::add(const system::State& state, model::Side side) {
 void MechanismInterpolation::take(const system::State& before, const system::State& after) {
   // A restart of the march leaves other accelerations, and a lock another phase or other velocities.
   const bool goes_on = count_ > 0 && knot(0).state.t == before.t && knot(0).state.v == before.v &&
-                       knot(0).state.phase == before.phase && last_acceleration_ == before.acceleration;
+                       knot(0).state.phase == before.phase && knot(0).state.rubbing == before.rubbing &&
+                       last_acceleration_ == before.acceleration;
   if (!goes_on) {
     count_ = 0;
     add(before, model::Side::right);

@@ -1,4 +1,5 @@
 #include <rubato/analysis/mechanism_ledger.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 namespace rubato::analysis {
 
@@ -23,6 +24,7 @@ double MechanismLedger::strain(const system::State& state) {
 
 void MechanismLedger::start(const system::State& state) {
   sums_ = {};
+  last_impulsive_work_ = 0.0;
   last_kinetic_ = kinetic(state);
   sums_.start = last_kinetic_ + strain(state);
 }
@@ -38,27 +40,55 @@ MechanismLedger::Booking MechanismLedger::booking(const system::State& before, c
     booked.load -= 0.5 * force_.dot(travel_);
     equations_.force_of(Role::damper, force_);
     booked.damper += 0.5 * force_.dot(travel_);
+    const system::State& end = is_end ? after : before;
+    for (std::size_t i = 0; i < end.rubbing.size(); ++i) {
+      const auto& s = mechanism_.model().frictions[i].s;
+      booked.friction -=
+          0.5 * equations_.friction_force(i, end.multiplier) * (s.value(after.q.data()) - s.value(before.q.data()));
+    }
+  }
+  if (mechanism_.model().drives.empty()) return booked;
+  for (const bool is_end : {false, true}) {
+    balanced_ = is_end ? after : before;
+    const model::Side side = is_end ? model::Side::left : model::Side::right;
+    if (!integrate::find_acceleration(equations_, balanced_, side)) balanced_ = is_end ? after : before;
+    for (const auto& drive : mechanism_.model().drives) {
+      const double change = model::derivatives(drive.law, after.t, model::Side::left).value -
+                            model::derivatives(drive.law, before.t, model::Side::right).value;
+      booked.drive -= 0.5 * balanced_.multiplier[mechanism_.first_row(drive.joint)] * change;
+    }
   }
   return booked;
 }
 
-void MechanismLedger::add_step(const system::State& before, const system::State& after) {
-  // A lock that engaged between the steps changed the velocities.
-  sums_.lock_dissipated += last_kinetic_ - kinetic(before);
+void MechanismLedger::add_step(const system::State& before, const system::State& after, double impulsive_work) {
+  // A lock that engaged between the steps changed the velocities, or a drive that prescribes another.
+  const double impulse = impulsive_work - last_impulsive_work_;
+  last_impulsive_work_ = impulsive_work;
+  sums_.lock_dissipated += last_kinetic_ - kinetic(before) + impulse;
+  sums_.drive_work += impulse;
   const Booking booked = booking(before, after);
   sums_.damper_dissipated += booked.damper;
+  sums_.friction_dissipated += booked.friction;
   sums_.load_work += booked.load;
+  sums_.drive_work += booked.drive;
   last_kinetic_ = kinetic(after);
 }
 
-MechanismEnergy MechanismLedger::at(const system::State& before, const system::State& now) {
+MechanismEnergy MechanismLedger::at(const system::State& before, const system::State& now, double impulsive_work) {
   const Booking part = &before == &now ? Booking{} : booking(before, now);
   MechanismEnergy energy = sums_;
   energy.kinetic = kinetic(now);
   energy.strain = strain(now);
-  if (&before != &now) energy.lock_dissipated += last_kinetic_ - kinetic(before);
+  if (&before != &now) {
+    const double impulse = impulsive_work - last_impulsive_work_;
+    energy.lock_dissipated += last_kinetic_ - kinetic(before) + impulse;
+    energy.drive_work += impulse;
+  }
   energy.damper_dissipated += part.damper;
+  energy.friction_dissipated += part.friction;
   energy.load_work += part.load;
+  energy.drive_work += part.drive;
   return energy;
 }
 

@@ -18,9 +18,8 @@ constexpr Index default_count = 20, largest = 3000;
 system::State at_rest(const system::State& start, const system::Mechanism& mechanism,
                       std::vector<std::string>& warnings) {
   system::State state = start;
-  state.v.setZero();
   system::MechanismEquations equations(mechanism);
-  if (!integrate::find_acceleration(equations, state, model::Side::right)) return start;
+  if (!integrate::find_acceleration_at_rest(equations, state, model::Side::right)) return start;
   Vector force(mechanism.size()), gap(mechanism.constraint_count()), product(mechanism.size());
   equations.go_to(state, model::Side::right);
   equations.residual(force, gap);

@@ -1,5 +1,6 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
@@ -33,9 +34,12 @@ Index find(const std::string& name, const Location& where, const system::Mechani
 /// A sixth of the shortest period of a harmonic load.
 double period_limit(const system::Mechanism& mechanism) {
   double fastest = 0.0;
-  for (const auto& force : mechanism.model().forces)
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&force.law))
+  const auto take = [&](const model::TimeLaw& law) {
+    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&law))
       fastest = std::max(fastest, std::abs(harmonic->angular_frequency));
+  };
+  for (const auto& force : mechanism.model().forces) take(force.law);
+  for (const auto& law : mechanism.model().following_laws) take(law);
   return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest / 6.0 : HUGE_VAL;
 }
 
@@ -90,6 +94,29 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
   return step;
 }
 
+/// From an equilibrium at rest: with the velocities and accelerations that the drives have at t = 0.
+system::State set_in_motion(const Location& where, const system::Mechanism& mechanism, const system::State& at_rest) {
+  if (mechanism.model().drives.empty()) return at_rest;
+  system::MechanismEquations equations(mechanism);
+  const auto start = integrate::make_consistent(equations, at_rest);
+  if (!start.is_consistent)
+    throw InvalidInput(
+        where,
+        "no velocities and accelerations were found at the equilibrium that the drives and joints allow; "
+        "look for a drive that the joints hinder there");
+  return start.state;
+}
+
+/// Decides which joints with friction stick at the start.
+void settle_start(const Location& where, const system::Mechanism& mechanism, system::State& state) {
+  if (mechanism.model().frictions.empty()) return;
+  system::MechanismEquations equations(mechanism);
+  if (!integrate::settle_new_velocities(equations, state))
+    throw InvalidInput(where,
+                       "no accelerations were found at the start that go with the friction of the joints: with "
+                       "so large a coefficient their reactions grow without bound; take a smaller one");
+}
+
 }  // namespace
 
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
@@ -97,6 +124,17 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
   system::MechanismEquations equations(mechanism);
   const auto start = integrate::make_consistent(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
+  if (start.is_assembled && start.worst_rate >= 0) {
+    std::vector<std::string> drives;
+    for (const auto& drive : mechanism.model().drives) drives.push_back(fmt::format("\"{}\"", drive.name));
+    throw InvalidInput(
+        where,
+        fmt::format("drives contradict each other or the joints: all hold at the start, but at once \"{}\" would "
+                    "come apart at {:.4g} m/s or rad/s; leave one of the drives of {} out, or let it say what the "
+                    "others make of it",
+                    mechanism.rows()[static_cast<std::size_t>(start.worst_rate)], start.gap_rate,
+                    fmt::join(drives, ", ")));
+  }
   if (start.is_assembled && !start.is_consistent) {
     equations.go_to(start.state, model::Side::right);
     const std::string part = equations.non_finite_part();
@@ -119,10 +157,11 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
                     "{:.4g}",
                     coordinate(start.most_moved), start.position_moved));
   if (start.most_changed >= 0)
-    warnings.push_back(
-        fmt::format("the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
-                    "{:.4g}, which took {:.4g} J",
-                    coordinate(start.most_changed), start.velocity_changed, start.energy_lost));
+    warnings.push_back(fmt::format(
+        "the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
+        "{:.4g}, which {} {:.4g} J",
+        coordinate(start.most_changed), start.velocity_changed, start.energy_lost >= start.drive_work ? "took" : "gave",
+        std::abs(start.energy_lost - start.drive_work)));
   if (!start.redundant.empty())
     warnings.push_back(
         fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
@@ -171,6 +210,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   MechanismPlan plan;
   TransientPlan& transient = plan.transient;
   plan.allow_unstable = description.allow_unstable;
+  plan.project_velocities = description.project_velocities;
   transient.method = method_of(description.method, parameters);
   try {
     (void)integrate::make_mechanism_stepper(transient.method, mechanism, {}, plan.allow_unstable);
@@ -191,8 +231,9 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
     const MechanismStatic found = equilibrium_near(transient.start, mechanism);
     if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
       throw InvalidInput(where, title + complaint);
-    transient.start = found.state;
+    transient.start = set_in_motion(where, mechanism, found.state);
   }
+  settle_start(where, mechanism, transient.start);
   if (description.automatic_step) {
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
                                          transient.start, parameters, transient.duration);
@@ -209,8 +250,11 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                                      transient.duration / step, step));
     transient.automatic = fixed_step(step, transient.duration);
   }
-  for (const auto& force : mechanism.model().forces) {
-    const auto* table = std::get_if<model::TableLaw>(&force.law);
+  std::vector<const model::TableLaw*> tables;
+  for (const auto& force : mechanism.model().forces) tables.push_back(std::get_if<model::TableLaw>(&force.law));
+  for (const auto& law : mechanism.model().following_laws) tables.push_back(std::get_if<model::TableLaw>(&law));
+  for (const auto& drive : mechanism.model().drives) tables.push_back(std::get_if<model::TableLaw>(&drive.law));
+  for (const auto* table : tables) {
     if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
     if (table->times.front() <= 0.0 && table->times.back() >= transient.duration * (1.0 - 1e-12)) continue;
     throw InvalidInput(where,

@@ -12,6 +12,7 @@ namespace rubato::analysis {
 struct MechanismPlan {
   TransientPlan transient;  ///< `start` is consistent; `automatic` holds the plan of fixed steps too
   bool allow_unstable = false;
+  bool project_velocities = false;
   std::vector<std::string> warnings;  ///< what the start took: parts that moved, constraints that repeat others
 
   std::string summary() const;

@@ -21,6 +21,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
       joints_(mechanism),
       observed_(joints_.with_angles(plan.transient.observed)),
       reactions_(mechanism),
+      frictions_(mechanism),
       equations_(mechanism) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time = scalar("time", "s", "time");
@@ -36,6 +37,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
   observed_.add(layout, {Quantity::position, Quantity::velocity, Quantity::acceleration});
   joints_.add_displacements(layout);
   reactions_.add(layout);
+  frictions_.add(layout);
   rows_ = sink.open(layout);
   if (!plan.transient.energy) return;
   energy_rows_ = sink.open({name,
@@ -45,7 +47,9 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                              scalar("strain", "J", "strain energy of beams, springs and elastic locks"),
                              scalar("damper_dissipated", "J", "dissipated by the dampers since the start"),
                              scalar("lock_dissipated", "J", "kinetic energy that rigid locks took since the start"),
-                             scalar("load_work", "J", "work of loads, gravity and drives since the start"),
+                             scalar("friction_dissipated", "J", "dissipated by the friction of joints since the start"),
+                             scalar("load_work", "J", "work of loads, gravity and laws of joints since the start"),
+                             scalar("drive_work", "J", "work of the drives that prescribe motions since the start"),
                              scalar("residue", "J", "what the method itself made (+) or lost (-)")},
                             {{"type", "energy"}}});
 }
@@ -62,30 +66,42 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
   observed_.append({&positions_, &velocities_, &accelerations_}, row_);
   joints_.append_displacements(row_);
   reactions_.append(joints_.motion(), balanced_.multiplier, row_);
+  equations_.go_to(balanced_, model::Side::right);
+  frictions_.append(equations_, balanced_.multiplier, row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;
-  const std::array<double, 7> ledger{
-      state.t,           energy->kinetic,  energy->strain, energy->damper_dissipated, energy->lock_dissipated,
-      energy->load_work, energy->residue()};
+  const std::array<double, 9> ledger{state.t,
+                                     energy->kinetic,
+                                     energy->strain,
+                                     energy->damper_dissipated,
+                                     energy->lock_dissipated,
+                                     energy->friction_dissipated,
+                                     energy->load_work,
+                                     energy->drive_work,
+                                     energy->residue()};
   energy_rows_->append(ledger);
 }
 
 void write_events(const std::string& name, const std::vector<integrate::LockEvent>& events,
                   const system::Mechanism& mechanism, results::Sink& sink) {
-  if (mechanism.model().locks.empty()) return;
+  const auto& locks = mechanism.model().locks;
+  if (locks.empty() && mechanism.model().frictions.empty()) return;
   std::vector<std::string> joints;
-  for (const auto& lock : mechanism.model().locks) joints.push_back(lock.name);
+  for (const auto& lock : locks) joints.push_back(lock.name);
+  for (const auto& friction : mechanism.model().frictions) joints.push_back(friction.name);
   const auto rows = sink.open({name,
                                "events",
                                "time",
                                {scalar("time", "s", "when it happened"),
-                                {"joint", "1", "whose lock", "", {}, joints},
-                                {"event", "1", "what it did", "", {}, {"released", "engaged"}},
+                                {"joint", "1", "whose lock or friction", "", {}, joints},
+                                {"event", "1", "what it did", "", {}, {"released", "engaged", "slips", "sticks"}},
                                 scalar("energy_lost", "J", "kinetic energy that the lock took")},
                                {{"type", "events"}}});
   for (const auto& event : events) {
-    const std::array<double, 4> row{event.t, static_cast<double>(event.lock), event.has_engaged ? 1.0 : 0.0,
+    const bool is_friction = event.friction >= 0;
+    const double part = is_friction ? static_cast<double>(locks.size()) + event.friction : event.lock;
+    const std::array<double, 4> row{event.t, part, (is_friction ? 2.0 : 0.0) + (event.has_engaged ? 1.0 : 0.0),
                                     event.energy_lost};
     rows->append(row);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/joint_coordinates.hpp>
+#include <rubato/analysis/joint_frictions.hpp>
 #include <rubato/analysis/joint_reactions.hpp>
 #include <rubato/analysis/mechanism_ledger.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
@@ -15,7 +16,7 @@
 namespace rubato::analysis {
 
 /// Turns states of a mechanism into rows: time, position, velocity and acceleration of what is observed, the coordinate
-/// that each joint leaves free, the reactions of the joints, and the energy ledger in a table of its own.
+/// that each joint leaves free, the reactions and frictions of the joints, and the energy ledger in a table of its own.
 ///
 /// Accelerations and reactions are those of equilibrium at the positions and velocities of the row: the multipliers of
 /// a step carry what the constraints do to velocities that have drifted, over the length of that step.
@@ -34,6 +35,7 @@ class MechanismRecorder {
   JointCoordinates joints_;
   ObservedBlocks observed_;
   JointReactions reactions_;
+  JointFrictions frictions_;
   system::MechanismEquations equations_;
   system::State balanced_;
   Vector positions_, velocities_, accelerations_;
@@ -42,7 +44,7 @@ class MechanismRecorder {
   long count_ = 0;
 };
 
-/// The locks that engaged and let go, in a table `events`.
+/// The locks that engaged and let go, and the joints that stuck and slipped, in a table `events`.
 void write_events(const std::string& name, const std::vector<integrate::LockEvent>& events,
                   const system::Mechanism& mechanism, results::Sink& sink);
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rubato::analysis {
@@ -18,8 +19,15 @@ using OutputKind = model::OutputDescription::Kind;
 class MechanismObserver final : public integrate::Observer {
  public:
   MechanismObserver(const TransientPlan& plan, const system::Mechanism& mechanism, MechanismRecorder& recorder,
-                    RunContext& context)
-      : plan_(plan), recorder_(recorder), context_(context), ledger_(mechanism), between_(mechanism) {}
+                    const integrate::MechanismTimeline& timeline, RunContext& context)
+      : plan_(plan),
+        recorder_(recorder),
+        timeline_(timeline),
+        context_(context),
+        ledger_(mechanism),
+        between_(mechanism),
+        equations_(mechanism),
+        drift_(mechanism.constraint_count()) {}
 
   void start(const system::State& state) {
     ledger_.start(state);
@@ -32,12 +40,16 @@ class MechanismObserver final : public integrate::Observer {
     ++steps_;
     last_recorded_ = false;
     if (plan_.output == OutputKind::interval || plan_.output == OutputKind::times) record_between(before, after);
-    if (plan_.energy) ledger_.add_step(before, after);
+    if (plan_.energy) ledger_.add_step(before, after, timeline_.impulsive_work());
     if (plan_.output == OutputKind::every_step || (plan_.output == OutputKind::every && steps_ % plan_.every == 0))
       record(after, after);
+    note_drift(after);
     if (steps_ % 64 == 0) context_.progress.advance(after.t);
     return !context_.stop.load(std::memory_order_relaxed);
   }
+
+  /// Largest rate of the constraints at the ends of the steps [m/s], [rad/s].
+  double largest_drift() const { return largest_drift_; }
 
   void finish(const system::State& state) {
     if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
@@ -48,8 +60,16 @@ class MechanismObserver final : public integrate::Observer {
   void record(const system::State& before, const system::State& now, bool is_balanced = false) {
     last_recorded_ = true;
     if (!plan_.energy) return recorder_.record(now, nullptr, is_balanced);
-    const MechanismEnergy energy = ledger_.at(before, now);
+    const MechanismEnergy energy = ledger_.at(before, now, timeline_.impulsive_work());
     recorder_.record(now, &energy, is_balanced);
+  }
+
+  void note_drift(const system::State& state) {
+    if (drift_.size() == 0) return;
+    equations_.go_to(state, model::Side::left);
+    equations_.constraints(drift_);
+    equations_.constraint_rate(state.v, drift_);
+    largest_drift_ = std::max(largest_drift_, drift_.cwiseAbs().maxCoeff());
   }
 
   double next_time() const {
@@ -73,9 +93,13 @@ class MechanismObserver final : public integrate::Observer {
 
   const TransientPlan& plan_;
   MechanismRecorder& recorder_;
+  const integrate::MechanismTimeline& timeline_;
   RunContext& context_;
   MechanismLedger ledger_;
   MechanismInterpolation between_;
+  system::MechanismEquations equations_;
+  Vector drift_;
+  double largest_drift_ = 0.0;
   system::State state_;
   long steps_ = 0, next_ = 0;
   bool last_recorded_ = false;
@@ -117,10 +141,37 @@ std::string reason(const integrate::MarchReport& report, const system::Mechanism
           "or "
           "a larger tolerance";
       break;
+    case integrate::StepOutcome::no_way_on:
+      what = "no velocities and accelerations were found that the joints and locks allow from then on";
+      remedy = "look for a drive against a lock, or for locks and drives that contradict each other there";
+      break;
     case integrate::StepOutcome::accepted:
       break;
   }
   return fmt::format("at t = {} s with the step {} s {}; {}", report.failed_at, report.failed_step, what, remedy);
+}
+
+/// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
+void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism,
+                   std::vector<std::string>& findings) {
+  constexpr long most_told = 6;
+  std::vector<long> changes(mechanism.model().frictions.size(), 0);
+  for (const auto& event : events) {
+    if (event.friction < 0) {
+      findings.push_back(
+          fmt::format("\"{}\" {} at t = {:.9g} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
+                      event.has_engaged ? "locks" : "lets go", event.t,
+                      event.energy_lost > 0.0 ? fmt::format(", taking {:.4g} J", event.energy_lost) : ""));
+    } else if (++changes[static_cast<std::size_t>(event.friction)] <= most_told) {
+      findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s",
+                                     mechanism.model().frictions[static_cast<std::size_t>(event.friction)].name,
+                                     event.has_engaged ? "sticks" : "slips", event.t));
+    }
+  }
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (changes[i] > most_told)
+      findings.push_back(
+          fmt::format("\"{}\" sticks and slips {} times in all", mechanism.model().frictions[i].name, changes[i]));
 }
 
 }  // namespace
@@ -131,14 +182,15 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   const AutomaticStep& step = *transient.automatic;
   const auto& alpha = std::get<integrate::GeneralizedAlpha>(transient.method.formula);
   integrate::NewtonPlan newton;
-  newton.projects_velocities = std::holds_alternative<integrate::PiControl>(step.plan.controller);
+  newton.projects_velocities =
+      plan.project_velocities || std::holds_alternative<integrate::PiControl>(step.plan.controller);
   const auto stepper = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
   const auto estimator = integrate::make_estimator(step.estimator, alpha, integrate::make_error_space(mechanism),
                                                    transient.start, transient.duration);
   constexpr double resolution = 1e-12;
   integrate::MechanismTimeline timeline(mechanism, resolution * transient.duration);
   MechanismRecorder recorder(name, plan, mechanism, context.sink);
-  MechanismObserver observer(transient, mechanism, recorder, context);
+  MechanismObserver observer(transient, mechanism, recorder, timeline, context);
   system::State state = transient.start;
   const bool is_fixed = std::holds_alternative<integrate::FixedStep>(step.plan.controller);
   if (is_fixed) {  // with steps that change it is carried over by the march
@@ -157,12 +209,9 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   RunReport run;
   run.statistics = statistics(report, state.t);
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
+  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
   run.warnings = plan.warnings;
-  for (const auto& event : timeline.events())
-    run.findings.push_back(
-        fmt::format("\"{}\" {} at t = {:.9g} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
-                    event.has_engaged ? "locks" : "lets go", event.t,
-                    event.energy_lost > 0.0 ? fmt::format(", taking {:.4g} J", event.energy_lost) : ""));
+  report_events(timeline.events(), mechanism, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
     run.message = reason(report.march, mechanism, state);

@@ -132,6 +132,7 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
           "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller "
           "step, or a larger tolerance";
       break;
+    case integrate::StepOutcome::no_way_on:
     case integrate::StepOutcome::accepted:
       break;
   }

@@ -182,6 +182,9 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan.method = method_of(description.method, parameters);
   plan.duration = positive(description.duration, parameters, title + "duration", where);
   plan.energy = description.energy;
+  if (description.project_velocities)
+    throw InvalidInput(description.project_velocities_where,
+                       title + "project_velocities is for mechanisms: this model has no joints; leave it out");
   plan.start = system.start();
   if (description.initial) plan.start = static_start(name, where, *description.initial, system);
   const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);

@@ -220,13 +220,15 @@ class Marcher {
     ++next_breakpoint_;
     part_ = 0.0;
     if (!timeline_.jumps_at(base_.t)) return estimator_.forget();
-    timeline_.restart(base_);
+    if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
     start_anew();
   }
 
   void pass_event() {
     ++report_.events;
-    if (timeline_.pass(to_, base_, stepper_.shift() * base_step_)) return start_anew();
+    const Passage passage = timeline_.pass(to_, base_, stepper_.shift() * base_step_);
+    if (passage == Passage::fails) return fail({StepOutcome::no_way_on, -1}, base_step_);
+    if (passage == Passage::restarts) return start_anew();
     estimator_.forget();
     history_ = {};
     ++report_.restarts;

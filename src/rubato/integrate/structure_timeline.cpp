@@ -64,7 +64,10 @@ bool StructureTimeline::jumps_at(double t) {
   return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm()));
 }
 
-void StructureTimeline::restart(system::State& state) { equilibrium_(state, state.auxiliary_acceleration); }
+bool StructureTimeline::restart(system::State& state) {
+  equilibrium_(state, state.auxiliary_acceleration);
+  return true;
+}
 
 bool StructureTimeline::has_ended_at(Index contact, const system::State& from, const system::State& to) {
   const GuardValue end = guard(contact, from, to);
@@ -74,7 +77,7 @@ bool StructureTimeline::has_ended_at(Index contact, const system::State& from, c
 // A damped stop that closes pushes at once. All other forces are the same on both sides of a transition, and so is the
 // acceleration: what jumps is their rate. A slider that begins to slip loses kT du/dt, one that comes to rest has none
 // on either side; a stop gains or loses k du/dt + c d2u/dt2.
-bool StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
+Passage StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
   bool has_kink = false, has_jump = false;
   beyond_.slider_force = state.slider_force;
   for (Index i = 0; i < system_.contact_count(); ++i) {
@@ -96,15 +99,18 @@ bool StructureTimeline::pass(const system::State& before, system::State& state, 
       beyond_.slider_force[i] += watch == Watch::opening ? -shift * rate : shift * rate;
     }
   }
-  if (has_jump) restart(state);
-  if (has_jump || !has_kink || shift == 0.0) return has_jump;
+  if (has_jump) {
+    restart(state);
+    return Passage::restarts;
+  }
+  if (!has_kink || shift == 0.0) return Passage::continues;
   beyond_.t = state.t;
   beyond_.q = state.q;
   beyond_.v = state.v;
   equilibrium_(state, left_);
   equilibrium_(beyond_, right_);
   state.auxiliary_acceleration += right_ - left_;
-  return false;
+  return Passage::continues;
 }
 
 StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::State& from,

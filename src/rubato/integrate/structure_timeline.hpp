@@ -22,8 +22,8 @@ class StructureTimeline final : public Timeline {
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
-  void restart(system::State& state) override;
-  bool pass(const system::State& before, system::State& state, double shift) override;
+  bool restart(system::State& state) override;
+  Passage pass(const system::State& before, system::State& state, double shift) override;
   double resolution() const override { return resolution_; }
   Crossing first_crossing(const system::State& from, const system::State& to, double least) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;

@@ -18,6 +18,13 @@ struct GuardValue {
   double rate = 0.0;  ///< its derivative with respect to time
 };
 
+/// How a march goes on from a transition.
+enum class Passage {
+  continues,  ///< the acceleration does not jump
+  restarts,   ///< it does, or velocities do: nothing before says anything about what follows
+  fails,      ///< there is no consistent state from which to go on
+};
+
 /// What a march with automatic steps asks of the equations besides steps: when something is known to happen, and
 /// whether something has happened. What has happened follows from the two ends of a step alone, so that a try that is
 /// thrown away leaves no trace. A workspace: one a march.
@@ -28,18 +35,18 @@ class Timeline {
   /// Times in (from, to) at which the loads are not smooth, rising. No step passes one.
   virtual std::vector<double> breakpoints(double from, double to) const = 0;
 
-  /// Whether the loads jump at t.
+  /// Whether the loads, or the velocity that a drive prescribes, jump at t.
   virtual bool jumps_at(double t) = 0;
 
-  /// Lets a state go on from a jump of the loads: the auxiliary acceleration becomes that of equilibrium after it.
-  virtual void restart(system::State& state) = 0;
+  /// Lets a state go on from a jump: the auxiliary acceleration becomes that of equilibrium after it. Returns false
+  /// where there is none.
+  virtual bool restart(system::State& state) = 0;
 
   /// Lets a state go on from the transitions in which a step ended. The auxiliary acceleration is carried over what
   /// jumps with its derivative; where the acceleration itself jumps it becomes that of equilibrium.
   /// @param before  where the step started
   /// @param shift   the auxiliary acceleration stands at state.t + shift [s]
-  /// @return whether the acceleration jumps
-  virtual bool pass(const system::State& before, system::State& state, double shift) = 0;
+  virtual Passage pass(const system::State& before, system::State& state, double shift) = 0;
 
   /// Times are located to this [s].
   virtual double resolution() const = 0;

@@ -74,6 +74,8 @@ std::string fingerprint_of(const model::StudyDescription& study, const numerics:
     }
   };
   for (const auto& force : study.model.forces) take_law(force.law);
+  for (const auto& joint : study.model.joints)
+    if (joint.motion) std::visit(take_law, joint.motion->law);
   if (study.model.base_motion) take_law(study.model.base_motion->law);
   if (study.model.matrices) {
     digest.take(study.model.matrices->mass);

@@ -113,6 +113,8 @@ TransientDescription read_transient(TomlReader& reader) {
   transient.observe = read_observe(reader);
   transient.energy = reader.optional_bool("energy").value_or(true);
   transient.allow_unstable = reader.optional_bool("allow_unstable").value_or(false);
+  transient.project_velocities = reader.optional_bool("project_velocities").value_or(false);
+  transient.project_velocities_where = reader.where("project_velocities");
   if (reader.optional_word("initial", {"given", "static"}) == "static")
     transient.initial = read_static(reader);
   else if (reader.has("displacements"))

@@ -125,6 +125,30 @@ LockDescription read_lock(TomlReader& reader) {
   return lock;
 }
 
+/// @param is_revolute  takes the radius of its pin
+FrictionDescription read_friction(TomlReader& reader, bool is_revolute) {
+  FrictionDescription friction;
+  friction.where = reader.where();
+  friction.coefficient = reader.quantity("coefficient");
+  friction.preload = reader.optional_quantity("preload");
+  const auto load = reader.optional_word("normal_load", {"reaction"});
+  if (friction.preload.has_value() == load.has_value())
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} needs either \"preload\" [N] or normal_load = \"reaction\"", reader.what()));
+  friction.radius = reader.optional_quantity("radius");
+  if (is_revolute && !friction.radius) {
+    reader.refuse_misspelling_of("radius");
+    throw InvalidInput(reader.where(),
+                       fmt::format("{} lacks the key \"radius\", of the pin [m]: the moment is coefficient * load * "
+                                   "radius",
+                                   reader.what()));
+  }
+  if (!is_revolute && friction.radius)
+    throw InvalidInput(friction.radius->where, fmt::format("{}: radius belongs to a revolute joint", reader.what()));
+  reader.finish();
+  return friction;
+}
+
 /// The keys that belong to one type of joint each; others are refused with the types that take them.
 void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
   const std::vector<std::string> of_one_coordinate{"revolute", "prismatic", "screw"};
@@ -137,9 +161,11 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"second_axis", {"universal"}},
       {"lead", {"screw"}},
       {"length", {"distance"}},
+      {"drive", of_one_coordinate},
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
+      {"friction", {"revolute", "prismatic"}},
       {"lock", {"revolute", "prismatic"}}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
@@ -154,7 +180,25 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
 const std::vector<std::string> joint_types{"rigid",     "revolute",  "prismatic", "distance", "cylindrical",
                                            "spherical", "universal", "planar",    "screw"};
 
-JointDescription read_joint(TomlReader& reader, std::size_t number) {
+/// A formula of t, or { table = "file.csv" }.
+DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& folder) {
+  DriveDescription drive;
+  drive.where = reader.where("drive");
+  if (!reader.node("drive")->is_table()) {
+    TimeFormulaDescription formula{reader.quantity("drive")};
+    if (formula.formula.expression.empty()) formula.formula.expression = fmt::format("{}", formula.formula.value);
+    drive.law = formula;
+    return drive;
+  }
+  auto inner = reader.optional_table("drive", fmt::format("{}: drive", reader.what()));
+  TableDescription table = read_table(inner->text("table"), folder, inner->where("table"));
+  if (inner->optional_word("beyond", {"error", "hold"}) == "hold") table.beyond = TableDescription::Beyond::hold;
+  inner->finish();
+  drive.law = table;
+  return drive;
+}
+
+JointDescription read_joint(TomlReader& reader, std::size_t number, const std::filesystem::path& folder) {
   JointDescription joint;
   joint.name = reader.optional_text("name").value_or(fmt::format("joint{}", number));
   joint.where = reader.where("name");
@@ -185,12 +229,15 @@ JointDescription read_joint(TomlReader& reader, std::size_t number) {
   }
   joint.value = is_prismatic ? reader.optional_quantity("displacement") : reader.optional_quantity("angle");
   joint.drive = is_prismatic ? reader.optional_quantity("force") : reader.optional_quantity("moment");
+  if (reader.has("drive")) joint.motion = read_drive(reader, folder);
   joint.length = reader.optional_quantity("length");
   joint.stiffness = reader.optional_quantity("stiffness");
   joint.rest = reader.optional_quantity("rest");
   joint.damping = reader.optional_quantity("damping");
   if (joint.rest && !joint.stiffness)
     throw InvalidInput(joint.rest->where, fmt::format("{}: rest goes with a stiffness", reader.what()));
+  if (auto friction = reader.optional_table("friction", fmt::format("{}: friction", reader.what())))
+    joint.friction = read_friction(*friction, joint.type == JointDescription::Type::revolute);
   if (auto lock = reader.optional_table("lock", fmt::format("{}: lock", reader.what()))) joint.lock = read_lock(*lock);
   reader.finish();
   return joint;
@@ -198,9 +245,10 @@ JointDescription read_joint(TomlReader& reader, std::size_t number) {
 
 }  // namespace
 
-void read_mechanism(TomlReader& root, ModelDescription& model) {
+void read_mechanism(TomlReader& root, const std::filesystem::path& folder, ModelDescription& model) {
   for (TomlReader& reader : root.tables("body")) model.bodies.push_back(read_body(reader));
-  for (TomlReader& reader : root.tables("joint")) model.joints.push_back(read_joint(reader, model.joints.size() + 1));
+  for (TomlReader& reader : root.tables("joint"))
+    model.joints.push_back(read_joint(reader, model.joints.size() + 1, folder));
 }
 
 }  // namespace rubato::io

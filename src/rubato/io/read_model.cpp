@@ -220,6 +220,14 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
       continue;
     }
     force.law = read_law(reader, folder);
+    force.follows = reader.optional_bool("following").value_or(false);
+    force.follows_where = reader.where("following");
+    force.at = reader.optional_quantities("at").value_or(std::vector<Quantity>{});
+    force.at_where = reader.where("at");
+    if (!force.at.empty() && !force.follows)
+      throw InvalidInput(force.at_where, reader.what() +
+                                             ": \"at\" goes with following = true; other forces act at the "
+                                             "node, or at the centre of mass of the body");
     reader.finish();
     model.forces.push_back(std::move(force));
   }
@@ -235,7 +243,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
   for (TomlReader& reader : root.tables("displacement")) read_displacement(reader, folder, model);
   model.base_motion = read_base_motion(root, folder);
   read_structure(root, folder, model);
-  read_mechanism(root, model);
+  read_mechanism(root, folder, model);
   return model;
 }
 

@@ -14,7 +14,7 @@ model::ModelDescription read_model(TomlReader& root, const std::filesystem::path
 void read_structure(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
 
 /// [[body]] and [[joint]].
-void read_mechanism(TomlReader& root, model::ModelDescription& model);
+void read_mechanism(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
 
 /// [nodes] and [beams], which name CSV files, added to those of the study.
 void read_mesh(TomlReader& root, const std::filesystem::path& folder, model::StructureDescription& structure);

@@ -31,9 +31,15 @@ class Builder {
     take_damping();
     take_sliders();
     take_stops();
-    for (const ForceDescription& force : description_.forces)
+    for (const ForceDescription& force : description_.forces) {
+      if (force.follows)
+        throw InvalidInput(force.follows_where, fmt::format("the force on \"{}\" follows its node, which takes a "
+                                                            "mechanism; give beams formulation = "
+                                                            "\"geometrically_exact\", or leave \"following\" out",
+                                                            force.on));
       model_.forces.push_back(
           {find(force.on, force.where, "a force is on"), law(force.law, fmt::format("the force on \"{}\"", force.on))});
+    }
     for (const HeldDescription& held : description_.held_forces)
       model_.held_forces.push_back({find(held.on, held.where, "a force is on"),
                                     number(held.value, fmt::format("the force on \"{}\": held", held.on))});

@@ -1,5 +1,4 @@
 #include <rubato/model/build_mechanism.hpp>
-#include <rubato/model/build_parts.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -71,9 +70,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   for (const JointDescription& joint : description.joints)
     (assembly.in_plane() ? take_plane_joint : take_space_joint)(assembly, joint);
   take_springs(assembly);
-  for (const ForceDescription& force : description.forces)
-    mechanism.forces.push_back({assembly.free_coordinate(force.on, force.where, "a force is on"),
-                                build_time_law(force.law, parameters, fmt::format("the force on \"{}\"", force.on))});
+  for (const ForceDescription& force : description.forces) take_force(assembly, force);
   if (const auto& gravity = description.gravity)
     mechanism.gravity = assembly.point(gravity->acceleration, gravity->where, "[gravity]: acceleration");
   mechanism.reference = reference_of(assembly);

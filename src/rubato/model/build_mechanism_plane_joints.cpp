@@ -47,20 +47,21 @@ Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, c
   return lock;
 }
 
-/// The law, the spring, the damper and the lock on what a joint leaves free.
+/// The friction, the lock, the drive, the law, the spring and the damper on what a joint leaves free.
 void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                      PlaneCoordinate s) {
   Mechanism& mechanism = assembly.mechanism;
   const double value = start_value(assembly, joint, part, s.is_angle());
   s.zero = s.value(assembly.start.data()) - value;
   mechanism.joint_coordinates.push_back({joint.name, s});
-  AtLock drive;
+  if (joint.friction) take_friction(assembly, joint, part, s);
+  AtLock when;
   if (joint.lock) {
     const Lock lock = lock_of(assembly, joint, part, s, value);
     const int index = mechanism.add_lock(lock);
-    if (lock.is_latch) drive = {index, false};
+    if (lock.is_latch) when = {index, false};
   }
-  take_laws(assembly, joint, part, s, value, drive);
+  take_laws(assembly, joint, part, s, value, when);
 }
 
 }  // namespace

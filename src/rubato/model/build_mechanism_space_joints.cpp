@@ -162,6 +162,10 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
     throw InvalidInput(joint.lock->where, part +
                                               ": locks are for mechanisms in the plane; in space give a law that "
                                               "grows stiff, as moment = \"-1e5*max(angle - 1, 0)\"");
+  if (joint.friction)
+    throw InvalidInput(joint.friction->where, part +
+                                                  ": friction of a joint in space is not available yet: leave it out, "
+                                                  "give the joint \"damping\", or place the mechanism in the plane");
   Mechanism& mechanism = assembly.mechanism;
   const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});

@@ -3,6 +3,7 @@
 #include <rubato/model/mechanism_description.hpp>
 #include <rubato/model/quantity.hpp>
 #include <rubato/model/structure_description.hpp>
+#include <rubato/model/time_law_description.hpp>
 
 #include <array>
 #include <optional>
@@ -85,36 +86,13 @@ struct StopDescription {
   Location where;
 };
 
-/// amplitude * cos(angular_frequency * t + phase)
-struct HarmonicDescription {
-  Quantity amplitude;          ///< of either sign
-  Quantity angular_frequency;  ///< [rad/s]; `frequency` [Hz] of the file is turned into it by the factor below
-  Quantity phase;              ///< [rad]
-  bool frequency_in_hertz = false;
-};
-
-/// A formula of t and of the parameters.
-struct TimeFormulaDescription {
-  Quantity formula;  ///< `expression` is never empty
-};
-
-/// Linear interpolation between the rows of a CSV file (already read; time in the first column, increasing; two rows of
-/// the same time are a jump).
-struct TableDescription {
-  enum class Beyond { error, zero, hold };  ///< what holds before the first row and after the last
-  std::string file;
-  std::vector<double> times;  ///< [s]
-  std::vector<double> values;
-  Beyond beyond = Beyond::error;
-  Location where;
-};
-
-using TimeLawDescription = std::variant<HarmonicDescription, TimeFormulaDescription, TableDescription>;
-
 struct ForceDescription {
   std::string on;          ///< a coordinate
   TimeLawDescription law;  ///< [N]
-  Location where;
+  bool follows = false;    ///< of mechanisms: along an axis of the node or body, which turns with it
+  std::vector<Quantity>
+      at;  ///< of a force that follows: its point in the configuration given [m]; the node unless given
+  Location where, follows_where, at_where;
 };
 
 /// A force per length that is the same all along a beam or truss, however many elements divide it.
@@ -250,6 +228,8 @@ struct TransientDescription {
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
   bool energy = true;                                          ///< keep the energy ledger
   bool allow_unstable = false;
+  bool project_velocities = false;  ///< of mechanisms: removes what their constraints forbid after each step
+  Location project_velocities_where;
 };
 
 struct MethodStudyDescription {

@@ -1,3 +1,4 @@
+#include <rubato/model/bodies/following_force.hpp>
 #include <rubato/model/bodies/gyroscopic.hpp>
 #include <rubato/model/mechanism.hpp>
 
@@ -98,6 +99,20 @@ int Mechanism::add_lock(Lock lock) {
   if (lock.damping > 0.0) elements.push_back(make_joint_damper(lock.name, lock.s, lock.damping, {index, true}));
   locks.push_back(std::move(lock));
   return index;
+}
+
+int Mechanism::add_friction(JointFriction friction) {
+  const int index = static_cast<int>(frictions.size());
+  friction.sticking_joint = static_cast<int>(joints.size());
+  joints.push_back(std::make_unique<StickingJoint<PlaneCoordinate>>(friction.name, friction.s, index));
+  frictions.push_back(std::move(friction));
+  return index;
+}
+
+void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
+                                    const TimeLaw& law) {
+  elements.push_back(make_following_force(name, point, axis, law));
+  following_laws.push_back(law);
 }
 
 void Mechanism::add_mass(Index node, double mass, double inertia) {

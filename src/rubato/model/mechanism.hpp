@@ -2,8 +2,10 @@
 
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/joint.hpp>
+#include <rubato/model/joints/joint_friction.hpp>
 #include <rubato/model/joints/lock.hpp>
 #include <rubato/model/joints/plane_point.hpp>
+#include <rubato/model/joints/prescribed_motion.hpp>
 #include <rubato/model/joints/space_coordinate.hpp>
 #include <rubato/model/joints/space_point.hpp>
 #include <rubato/model/structure.hpp>
@@ -90,9 +92,12 @@ struct Mechanism {
   std::vector<SpaceReaction> reactions;                 ///< in space
   std::vector<TurnCounter> turn_counters;
   std::vector<Lock> locks;
+  std::vector<PrescribedMotion> drives;
+  std::vector<JointFriction> frictions;
   std::vector<NodeForce> forces;
-  Axis gravity = Axis::Zero();  ///< [m/s2]
-  double reference = 0.0;       ///< characteristic size for error measures [m sqrt(kg)]; 0: none
+  std::vector<TimeLaw> following_laws;  ///< of the forces that turn with their node, for when they are not smooth
+  Axis gravity = Axis::Zero();          ///< [m/s2]
+  double reference = 0.0;               ///< characteristic size for error measures [m sqrt(kg)]; 0: none
   std::vector<DrawnLine> lines;
 
   explicit Mechanism(int dimension_ = 2);
@@ -128,6 +133,16 @@ struct Mechanism {
   /// good. What it turns off is made with AtLock{index, false}.
   /// @return its index
   int add_lock(Lock lock);
+  /// Adds friction, with the constraint that lets it stick. @return its index
+  int add_friction(JointFriction friction);
+  /// A force of the plane along an axis of a node, or a moment, that turns with it: see make_following_force.
+  void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
+  /// Moves a coordinate as a law says. @param name  of the joint
+  template <class Coordinate>
+  void add_drive(const std::string& name, const Coordinate& s, const MotionLaw& law) {
+    drives.push_back({name, law, static_cast<int>(joints.size())});
+    joints.push_back(std::make_unique<PrescribedJoint<Coordinate>>(name, s, law));
+  }
   /// Mass, and in the plane a moment of inertia, at a node.
   void add_mass(Index node, double mass, double inertia = 0.0);
 };

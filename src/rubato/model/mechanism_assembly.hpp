@@ -68,5 +68,6 @@ void take_body(MechanismAssembly& assembly, const BodyDescription& body);
 void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint);
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint);
 void take_springs(MechanismAssembly& assembly);
+void take_force(MechanismAssembly& assembly, const ForceDescription& force);
 
 }  // namespace rubato::model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/model/quantity.hpp>
+#include <rubato/model/time_law_description.hpp>
 
 #include <array>
 #include <optional>
@@ -43,6 +44,20 @@ struct LockDescription {
   Location where;
 };
 
+/// How a joint's coordinate moves, whatever it takes [rad] or [m].
+struct DriveDescription {
+  std::variant<TimeFormulaDescription, TableDescription> law;
+  Location where;
+};
+
+/// Coulomb friction on a joint's coordinate, mu N; of an angle mu N radius.
+struct FrictionDescription {
+  Quantity coefficient;             ///< [-]
+  std::optional<Quantity> preload;  ///< N [N]; unless given it is the joint's own reaction
+  std::optional<Quantity> radius;   ///< of the pin of a revolute joint [m]
+  Location where;
+};
+
 struct JointDescription {
   enum class Type { rigid, revolute, prismatic, distance, cylindrical, spherical, universal, planar, screw };
   std::string name;
@@ -59,9 +74,11 @@ struct JointDescription {
   std::optional<Quantity> lead;    ///< of a screw [m] a turn; negative: left-handed
   std::optional<Quantity> value;   ///< of its angle or displacement in the configuration given [rad] or [m]
   std::optional<Quantity> length;  ///< of a distance [m]; as the points lie unless given
-  std::optional<Quantity> drive;   ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`
+  std::optional<DriveDescription> motion;
+  std::optional<Quantity> drive;  ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`
   std::optional<Quantity> stiffness, rest, damping;  ///< of a spring and a damper on its coordinate
   std::optional<LockDescription> lock;
+  std::optional<FrictionDescription> friction;
   Location where;
 };
 

@@ -20,7 +20,16 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
   if (joint.axis.empty()) throw InvalidInput(joint.where, fmt::format("{} lacks the key \"axis\"", part));
 }
 
-/// The law of a moment or force, the spring and the damper.
+/// The law of a drive, checked.
+/// @param value  of the coordinate in the configuration given
+MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                   bool is_angle, double value);
+
+/// The friction of the joint that was added last on the coordinate that it leaves free, in the plane.
+void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                   const PlaneCoordinate& s);
+
+/// The drive, the law of a moment or force, the spring and the damper.
 /// @param s      with its zero
 /// @param value  of s in the configuration given
 /// @param when   the phase of a lock in which the law is at work
@@ -28,6 +37,7 @@ template <class Coordinate>
 void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part, const Coordinate& s,
                double value, const AtLock& when = {}) {
   auto& elements = assembly.mechanism.elements;
+  if (joint.motion) assembly.mechanism.add_drive(joint.name, s, drive_of(assembly, joint, part, s.is_angle(), value));
   if (joint.drive) {
     const std::string text =
         joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;

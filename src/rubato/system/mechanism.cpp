@@ -57,8 +57,10 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   diagonal_ = mass_.diagonal();
   require_mass(diagonal_, coordinates());
   has_diagonal_mass_ = mass_.nonZeros() == n;
-  for (const auto& joint : model_.joints)
+  for (const auto& joint : model_.joints) {
+    first_row_.push_back(constraint_count());
     for (const std::string& row : joint->row_names()) rows_.push_back(joint->name() + "." + row);
+  }
 
   const Index numbers = model_.numbers_a_node();
   const Index of_nodes = static_cast<Index>(model_.nodes.size()) * numbers;
@@ -86,6 +88,8 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
   start_.multiplier = Vector::Zero(constraint_count());
   start_.phase.assign(model_.locks.size(), model::lock_open);
+  start_.rubbing.assign(model_.frictions.size(), model::friction_free);
+  start_.stuck_at = Vector::Zero(static_cast<Index>(model_.frictions.size()));
 }
 
 void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {

@@ -31,6 +31,8 @@ class Mechanism {
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
   const std::vector<std::string>& coordinates() const { return model_.coordinates; }
   const std::vector<std::string>& rows() const { return rows_; }  ///< of constraints, "JOINT.x" [c]
+  /// The first row of a joint, among the model's.
+  Index first_row(int joint) const { return first_row_[static_cast<std::size_t>(joint)]; }
   /// The state at t = 0 as given: not yet consistent.
   const State& start() const { return start_; }
   double reference() const { return model_.reference; }
@@ -58,6 +60,7 @@ class Mechanism {
   Vector diagonal_, weight_;
   bool has_diagonal_mass_ = false;
   std::vector<std::string> rows_;
+  std::vector<Index> first_row_;  // of each joint
   struct Turn {
     Index quaternion = 0;          // its first number in q
     std::array<Index, 3> place{};  // tangent coordinates of the body axes, or `ground`

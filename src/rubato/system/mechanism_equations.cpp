@@ -7,6 +7,7 @@ namespace rubato::system {
 namespace {
 
 constexpr double share = 1e-10;
+constexpr std::size_t most_friction_places = 12;
 
 }  // namespace
 
@@ -77,6 +78,7 @@ void MechanismEquations::analyse() {
       for (const Index i : joint_places_[j].place) entries.emplace_back(n + joint_places_[j].first_row + r, i);
     is_symmetric = is_symmetric && joints_[j]->has_symmetric_curvature();
   }
+  for (const auto& friction : mechanism_.model().frictions) is_symmetric = is_symmetric && !friction.follows_reaction();
   factor_.analyse(size, n, entries, is_symmetric);
 
   for (Index column = 0; column < n; ++column)
@@ -109,11 +111,91 @@ void MechanismEquations::analyse() {
         }
       }
   }
+  for (const auto& friction : mechanism_.model().frictions) {
+    FrictionPlace place;
+    const JointPlace& joint = joint_places_[static_cast<std::size_t>(friction.joint)];
+    for (const Index i : joint.place)
+      for (int r = 0; r < friction.pressing_rows; ++r) place.slot.push_back(factor_.slot(i, n + joint.first_row + r));
+    friction_places_.push_back(std::move(place));
+  }
+}
+
+double MechanismEquations::pressing(const model::JointFriction& friction, const Vector& multiplier) const {
+  const Index row = mechanism_.first_row(friction.joint);
+  return friction.pressing_rows == 1 ? std::abs(multiplier[row])
+                                     : multiplier.segment(row, friction.pressing_rows).norm();
+}
+
+double MechanismEquations::friction_limit(std::size_t i, const Vector& multiplier) const {
+  const auto& friction = mechanism_.model().frictions[i];
+  return friction.coefficient *
+         (friction.preload + (friction.follows_reaction() ? pressing(friction, multiplier) : 0.0));
+}
+
+double MechanismEquations::friction_force(std::size_t i, const Vector& multiplier) const {
+  const auto& friction = mechanism_.model().frictions[i];
+  if (motion_.rubbing[i] == model::friction_sticks) return -multiplier[mechanism_.first_row(friction.sticking_joint)];
+  return -model::sliding_direction(motion_.rubbing[i]) * friction_limit(i, multiplier);
+}
+
+double MechanismEquations::friction_rate(std::size_t i) const {
+  return mechanism_.model().frictions[i].s.rate(motion_);
+}
+
+bool MechanismEquations::has_sliding_reactions() const {
+  const auto& frictions = mechanism_.model().frictions;
+  for (std::size_t i = 0; i < frictions.size(); ++i)
+    if (frictions[i].follows_reaction() && model::sliding_direction(motion_.rubbing[i]) != 0.0) return true;
+  return false;
+}
+
+void MechanismEquations::add_preload_friction(Vector& force) const {
+  const auto& frictions = mechanism_.model().frictions;
+  for (std::size_t i = 0; i < frictions.size(); ++i) {
+    const double applied =
+        model::sliding_direction(motion_.rubbing[i]) * frictions[i].coefficient * frictions[i].preload;
+    if (applied == 0.0) continue;
+    double slope[most_friction_places];
+    frictions[i].s.slope(motion_.q, slope);
+    const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[i].joint)];
+    for (std::size_t k = 0; k < place.place.size(); ++k) force[place.place[k]] += applied * slope[place.local[k]];
+  }
+}
+
+void MechanismEquations::linearise_friction(const Weights& weights, const Vector& multiplier) {
+  const auto& frictions = mechanism_.model().frictions;
+  double* const values = factor_.values();
+  for (std::size_t i = 0; i < frictions.size(); ++i) {
+    const auto& friction = frictions[i];
+    const double direction = model::sliding_direction(motion_.rubbing[i]);
+    if (direction == 0.0) continue;
+    const JointPlace& place = joint_places_[static_cast<std::size_t>(friction.joint)];
+    if (weights.stiffness != 0.0) {
+      friction.s.curvature(motion_.q, direction * friction_limit(i, multiplier), matrix_.data());
+      scatter(place, matrix_.data(), weights.stiffness);
+    }
+    const double size = friction.follows_reaction() ? pressing(friction, multiplier) : 0.0;
+    if (size == 0.0) continue;
+    double slope[most_friction_places];
+    friction.s.slope(motion_.q, slope);
+    const Index row = mechanism_.first_row(friction.joint);
+    const std::size_t rows = static_cast<std::size_t>(friction.pressing_rows);
+    for (std::size_t k = 0; k < place.place.size(); ++k)
+      for (std::size_t r = 0; r < rows; ++r)
+        values[friction_places_[i].slot[k * rows + r]] +=
+            direction * friction.coefficient * slope[place.local[k]] * multiplier[row + static_cast<Index>(r)] / size;
+  }
 }
 
 void MechanismEquations::go_to(const State& state, model::Side side) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), velocity_.data() + 1);
-  motion_ = {state.t, side, state.q.data(), velocity_.data() + 1, state.phase.data()};
+  motion_ = {state.t,
+             side,
+             state.q.data(),
+             velocity_.data() + 1,
+             state.phase.data(),
+             state.rubbing.data(),
+             state.stuck_at.data()};
 }
 
 void MechanismEquations::scatter(const ElementPlace& place, const double* matrix, double weight) {
@@ -130,6 +212,7 @@ void MechanismEquations::external_force(Vector& out) const {
 void MechanismEquations::elements_and_loads(Vector& force) {
   external_force(force);
   force = -force;
+  add_preload_friction(force);
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPlace& place = element_places_[e];
     elements_[e]->force(motion_, local_.data());
@@ -157,6 +240,10 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
   for (std::size_t i = 0; i < mass_slot_.size(); ++i) values[mass_slot_[i]] += weights.mass * mass_value_[i];
   external_force(force);
   force = -force;
+  if (weights.friction) {
+    add_preload_friction(force);
+    linearise_friction(weights, multiplier);
+  }
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const ElementPlace& place = element_places_[e];
     elements_[e]->tangent(motion_, weights.stiffness, weights.damping, local_.data(), matrix_.data());
@@ -214,6 +301,16 @@ void MechanismEquations::add_constraint_force(const Vector& multiplier, double f
         out[place.place[i]] +=
             value * jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
     }
+  }
+  const auto& frictions = mechanism_.model().frictions;
+  for (std::size_t i = 0; i < frictions.size(); ++i) {
+    const double direction = model::sliding_direction(motion_.rubbing[i]);
+    if (direction == 0.0 || !frictions[i].follows_reaction()) continue;
+    const double applied = factor * direction * frictions[i].coefficient * pressing(frictions[i], multiplier);
+    double slope[most_friction_places];
+    frictions[i].s.slope(motion_.q, slope);
+    const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[i].joint)];
+    for (std::size_t k = 0; k < place.place.size(); ++k) out[place.place[k]] += applied * slope[place.local[k]];
   }
 }
 

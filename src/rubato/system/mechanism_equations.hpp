@@ -33,11 +33,12 @@ class MechanismEquations {
   struct Weights {
     double mass = 1.0, damping = 0.0, stiffness = 0.0;
     double constraint = 0.0;  ///< what E is a share of, over M; 0: the weight of mass
+    bool friction = false;    ///< with the slopes of the friction that reactions make, beside G^T
   };
   void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
   /// Evaluates G alone, with g.
   void constraints(Vector& constraint);
-  /// out += factor G^T multiplier, with the G evaluated last.
+  /// out += factor (G^T multiplier + the friction that these multipliers make), with the G evaluated last.
   void add_constraint_force(const Vector& multiplier, double factor, Vector& out) const;
   /// The derivative of g(q(t), t) in time: G v + dg/dt [c], with the G evaluated last.
   void constraint_rate(const Vector& v, Vector& out);
@@ -67,6 +68,13 @@ class MechanismEquations {
   double stored_energy() const;  ///< of all elements where go_to() led, without gravity [J]
   /// Forces of the elements of one role [n].
   void force_of(model::Element::Role role, Vector& out);
+  /// Whether friction that follows a reaction slides: the multipliers then make forces that are not linear in them.
+  bool has_sliding_reactions() const;
+  /// The friction of a joint on its coordinate [N] or [N m].
+  double friction_force(std::size_t friction, const Vector& multiplier) const;
+  /// What friction can hold: mu N [N] or [N m].
+  double friction_limit(std::size_t friction, const Vector& multiplier) const;
+  double friction_rate(std::size_t friction) const;  ///< of its coordinate [rad/s] or [m/s]
   /// External forces by laws of t, and gravity [n].
   void external_force(Vector& out) const;
 
@@ -84,6 +92,12 @@ class MechanismEquations {
     Scatter jacobian, transposed;    // entries of G [r x k]
     std::size_t jacobian_start = 0;  // among jacobian_
   };
+  struct FrictionPlace {
+    std::vector<int> slot;  // of the forces on the places of the joint against its pressing rows [places x rows]
+  };
+  void add_preload_friction(Vector& force) const;
+  void linearise_friction(const Weights& weights, const Vector& multiplier);
+  double pressing(const model::JointFriction& friction, const Vector& multiplier) const;
   ElementPlace place_of(const std::vector<Index>& places) const;
   void analyse();
   void scatter(const ElementPlace& place, const double* matrix, double weight);
@@ -95,6 +109,7 @@ class MechanismEquations {
   std::vector<model::NodeForce> forces_;
   std::vector<ElementPlace> element_places_;
   std::vector<JointPlace> joint_places_;
+  std::vector<FrictionPlace> friction_places_;
   std::vector<int> mass_slot_;
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]

@@ -28,6 +28,7 @@ class Search {
       : equations_(equations), mechanism_(equations.mechanism()), plan_(plan) {
     const Index n = mechanism_.size(), c = mechanism_.constraint_count();
     found_.state = given;
+    std::fill(found_.state.rubbing.begin(), found_.state.rubbing.end(), model::friction_free);
     found_.state.v = found_.state.acceleration = found_.state.auxiliary_acceleration = Vector::Zero(n);
     found_.state.multiplier = Vector::Zero(c);
     force_.resize(n);

@@ -27,7 +27,8 @@ struct MechanismEquilibrium {
 /// 1998) and grows where the matrix is not positive definite on the constraints: it leads downhill, across
 /// configurations in which the stiffness is singular, to an equilibrium that is stable, unless it begins in one that is
 /// not.
-/// @param given  t, configuration and phases count
+/// Drives are held where they are at that time; friction is left out.
+/// @param given  t, configuration and phases of locks count
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan = {});
 

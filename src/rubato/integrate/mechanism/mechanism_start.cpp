@@ -13,42 +13,68 @@ Index largest_of(const Vector& x, double& value) {
   return place;
 }
 
+double largest_magnitude(const Vector& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0.0; }
+
 /// M and G at the state; its inverse is applied by equations.solve().
+/// @param friction  with the slopes of the friction that reactions make: for accelerations, not for projections
 bool factorise_mass(system::MechanismEquations& equations, const system::State& state, model::Side side, Vector& force,
-                    Vector& constraint) {
+                    Vector& constraint, bool friction = false) {
   equations.go_to(state, side);
-  equations.linearise({1.0, 0.0, 0.0}, state.multiplier, force, constraint);
+  equations.linearise({1.0, 0.0, 0.0, 0.0, friction}, state.multiplier, force, constraint);
   return equations.factorise();
+}
+
+/// @param stands  nothing moves, drives included
+bool balance(system::MechanismEquations& equations, system::State& state, model::Side side, bool stands) {
+  const auto& mechanism = equations.mechanism();
+  Vector force(mechanism.size()), constraint(mechanism.constraint_count());
+  Vector rate(constraint.size()), product(force.size()), explicit_rate(constraint.size()), last;
+  // Friction mu |multiplier| is homogeneous in the multipliers: its slopes at one guess say all, and each round is one
+  // of Newton's method. Without it the first round is the last.
+  constexpr int most_rounds = 30;
+  for (int round = 0; round < most_rounds; ++round) {
+    if (!factorise_mass(equations, state, side, force, constraint, true)) return false;
+    if (stands)
+      rate.setZero();
+    else
+      equations.second_rate(rate);
+    const Vector applied = force, wanted = rate;
+    force = -force;
+    rate = -rate;
+    equations.solve(force, rate);
+    last = state.multiplier;
+    state.acceleration = force;
+    state.multiplier = rate;
+    const bool is_linear = !equations.has_sliding_reactions();
+    // The share of the multipliers in the constraint rows: one correction removes it.
+    equations.constraints(constraint);
+    mechanism.times_mass(state.acceleration, product);
+    force = -(applied + product);
+    equations.add_constraint_force(state.multiplier, -1.0, force);
+    equations.constraint_rate(state.acceleration, rate);
+    equations.constraint_rate(Vector::Zero(force.size()), explicit_rate);
+    rate = -(rate - explicit_rate + wanted);
+    equations.solve(force, rate);
+    state.acceleration += force;
+    state.multiplier += rate;
+    if (!state.acceleration.allFinite() || !state.multiplier.allFinite()) return false;
+    if (is_linear || (state.multiplier - last).norm() <= 1e-12 * state.multiplier.norm()) {
+      state.auxiliary_acceleration = state.acceleration;
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
 
 bool find_acceleration(system::MechanismEquations& equations, system::State& state, model::Side side) {
-  const auto& mechanism = equations.mechanism();
-  Vector force(mechanism.size()), constraint(mechanism.constraint_count());
-  if (!factorise_mass(equations, state, side, force, constraint)) return false;
-  Vector rate(constraint.size()), product(force.size());
-  equations.second_rate(rate);
-  const Vector applied = force, wanted = rate;
-  force = -force;
-  rate = -rate;
-  equations.solve(force, rate);
-  state.acceleration = force;
-  state.multiplier = rate;
-  // The share of the multipliers in the constraint rows: one correction removes it.
-  equations.constraints(constraint);
-  mechanism.times_mass(state.acceleration, product);
-  force = -(applied + product);
-  equations.add_constraint_force(state.multiplier, -1.0, force);
-  equations.constraint_rate(state.acceleration, rate);
-  Vector explicit_rate(rate.size());
-  equations.constraint_rate(Vector::Zero(force.size()), explicit_rate);
-  rate = -(rate - explicit_rate + wanted);
-  equations.solve(force, rate);
-  state.acceleration += force;
-  state.multiplier += rate;
-  state.auxiliary_acceleration = state.acceleration;
-  return state.acceleration.allFinite() && state.multiplier.allFinite();
+  return balance(equations, state, side, false);
+}
+
+bool find_acceleration_at_rest(system::MechanismEquations& equations, system::State& state, model::Side side) {
+  state.v.setZero();
+  return balance(equations, state, side, true);
 }
 
 ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given, model::Side side) {
@@ -90,15 +116,31 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   if (!factorise_mass(equations, state, side, force, constraint)) return result;
   mechanism.times_mass(state.v, product);
   const double before = 0.5 * state.v.dot(product);
+  Vector impulse = Vector::Zero(c), rate(c), mean_rate(c), rate_of_time(c);
+  equations.constraint_rate(Vector::Zero(n), rate_of_time);
+  equations.constraint_rate(state.v, mean_rate);
   for (int round = 0; round < 2; ++round) {
     force.setZero();
     equations.constraint_rate(state.v, constraint);
     constraint = -constraint;
     equations.solve(force, constraint);
     state.v += force;
+    impulse += constraint;
+  }
+  equations.constraint_rate(state.v, rate);
+  mean_rate = 0.5 * (mean_rate + rate) - rate_of_time;
+  for (const auto& drive : mechanism.model().drives) {
+    const Index row = mechanism.first_row(drive.joint);
+    result.drive_work -= impulse[row] * mean_rate[row];
   }
   mechanism.times_mass(state.v, product);
-  result.energy_lost = before - 0.5 * state.v.dot(product);
+  result.energy_lost = before - 0.5 * state.v.dot(product) + result.drive_work;
+  result.worst_rate = largest_of(rate, result.gap_rate);
+  constexpr double round_off = 1e-12;  // of velocities, where nothing moves
+  const double speed =
+      largest_magnitude(first_velocity) + largest_magnitude(state.v) + largest_magnitude(rate_of_time) + round_off;
+  if (!(result.gap_rate <= 1e-8 * (1.0 + extent) * speed) && c > 0) return result;
+  result.worst_rate = -1;
   result.most_changed = largest_of(state.v - first_velocity, result.velocity_changed);
   if (result.velocity_changed <= 1e-12 * (1.0 + first_velocity.cwiseAbs().maxCoeff())) result.most_changed = -1;
   result.is_consistent = find_acceleration(equations, state, side);

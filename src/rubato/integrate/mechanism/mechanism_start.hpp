@@ -19,6 +19,9 @@ struct ConsistentStart {
   double gap = 0.0;              ///< largest violation of the constraints that is left [m], [rad]
   Index worst_row = -1;          ///< where
   double energy_lost = 0.0;      ///< kinetic energy that the projection of the velocities took away [J]
+  double drive_work = 0.0;       ///< what the drives gave as it set their velocities [J]
+  double gap_rate = 0.0;         ///< largest rate of the constraints that no velocities remove [m/s], [rad/s]
+  Index worst_rate = -1;         ///< where, if it is not round-off: constraints that contradict each other in motion
   std::vector<Index> redundant;  ///< rows of constraints that repeat others in this configuration
 };
 
@@ -26,15 +29,21 @@ struct ConsistentStart {
 ///
 ///   M (v - v_given) + G^T impulse = 0,   G v + dg/dt = 0
 ///
-/// then accelerations and multipliers of equilibrium:  M a + f + G^T multiplier = 0,   G a + (dG/dt) v + ... = 0.
-/// Phases of locks are kept. What cannot be joined is told by `gap` and `worst_row`.
+/// Drives give the impulses that their velocities take: the work of one is minus impulse times the mean of its
+/// coordinate's velocity before and after. Then accelerations and multipliers of equilibrium:  M a + f + G^T multiplier
+/// = 0,   G a + (dG/dt) v + ... = 0. Phases of locks are kept. What cannot be joined is told by `gap` and `worst_row`,
+/// what cannot move together (two drives that contradict each other) by `gap_rate` and `worst_rate`.
 /// @param side  which limit to take of loads that jump at the state's time
 ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given,
                                 model::Side side = model::Side::right);
 
 /// Writes acceleration and multiplier of equilibrium of a state that satisfies the constraints; the auxiliary
-/// acceleration becomes the same. Returns false where the matrix cannot be factorised.
+/// acceleration becomes the same. Returns false where the matrix cannot be factorised, and where no multipliers go
+/// with the friction that they make (Painleve's paradox).
 bool find_acceleration(system::MechanismEquations& equations, system::State& state, model::Side side);
+
+/// The same with all velocities zero and the drives held where they are, whatever their rates: for statics and modes.
+bool find_acceleration_at_rest(system::MechanismEquations& equations, system::State& state, model::Side side);
 
 /// The auxiliary acceleration of a method that carries that at t + shift h: A = a + shift h da/dt, with da/dt from the
 /// accelerations at both ends of a short motion. Multipliers are of second order only with this start (Arnold, Bruels

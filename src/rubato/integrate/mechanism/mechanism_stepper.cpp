@@ -37,6 +37,8 @@ class MechanismStepper final : public Stepper {
     scale_ = mean * p_.beta * h * h;
     to.t = t1;
     to.phase = from.phase;
+    to.rubbing = from.rubbing;
+    to.stuck_at = from.stuck_at;
     to.slider_force = from.slider_force;
     to.multiplier = from.multiplier;
     travel_ = h * from.v + (0.5 * h * h) * from.auxiliary_acceleration;
@@ -47,7 +49,7 @@ class MechanismStepper final : public Stepper {
       place(from, h, to);
       equations_.go_to(to, model::Side::left);
       if (needs_factors) {
-        equations_.linearise({1.0, mean * p_.gamma * h, scale_}, to.multiplier, force_, constraint_);
+        equations_.linearise({1.0, mean * p_.gamma * h, scale_, 0.0, true}, to.multiplier, force_, constraint_);
         is_fresh = true;
         if (!equations_.factorise()) return fault(StepOutcome::singular);
         needs_factors = false;

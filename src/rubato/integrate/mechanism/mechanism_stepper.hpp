@@ -29,7 +29,8 @@ struct NewtonPlan {
 /// a is the acceleration of equilibrium at the ends, A the auxiliary one. Newton's unknowns are positions and
 /// multipliers times beta h^2 (1 - alpha_f)/(1 - alpha_m): rows of M and G are then of one size whatever the step
 /// (Bottasso, Dopico and Trainelli 2008). Factors are kept while each iteration removes nine tenths of the error.
-/// Phases of locks stay as they are.
+/// Friction that follows a reaction is part of the equations: mu times the multipliers of the same instant, with their
+/// slopes beside G^T. Phases of locks and of friction stay as they are.
 ///
 /// Throws InvalidInput for a method of another family and, with constraints, for one that does not damp: of
 /// spectral radius 1 at infinite frequency the multipliers oscillate without end.

@@ -1,3 +1,4 @@
+#include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 
@@ -10,6 +11,8 @@ namespace {
 system::Loads loads_of(const model::Mechanism& model) {
   std::vector<system::LoadTerm> terms;
   for (const auto& force : model.forces) terms.push_back({{force.coordinate}, {1.0}, force.law});
+  // Only when they are not smooth is asked: any coordinate serves.
+  for (const auto& law : model.following_laws) terms.push_back({{0}, {1.0}, law});
   return system::Loads(std::move(terms));
 }
 
@@ -29,46 +32,134 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
       left_(mechanism.size()),
       right_(mechanism.size()),
       padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0) {
-  std::vector<Index> first_row;
-  Index rows = 0;
-  for (const auto& joint : mechanism.model().joints) {
-    first_row.push_back(rows);
-    rows += joint->rows();
-  }
   for (const auto& lock : mechanism.model().locks)
-    row_.push_back(lock.is_rigid() ? first_row[static_cast<std::size_t>(lock.joint)] : -1);
+    row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);
 }
 
 std::vector<double> MechanismTimeline::breakpoints(double from, double to) const {
-  return loads_.breakpoints(from, to);
+  std::vector<double> times = loads_.breakpoints(from, to);
+  for (const auto& drive : mechanism_.model().drives)
+    if (const auto* table = std::get_if<model::TableLaw>(&drive.law))
+      for (const double t : table->times)
+        if (t > from && t < to) times.push_back(t);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
 }
 
 bool MechanismTimeline::jumps_at(double t) {
   loads_.evaluate(t, left_, model::Side::left);
   loads_.evaluate(t, right_, model::Side::right);
-  return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm()));
+  return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm())) || has_drive_jump(t);
 }
 
-void MechanismTimeline::restart(system::State& state) {
-  (void)find_acceleration(equations_, state, model::Side::right);
-  release(state);
+bool MechanismTimeline::has_drive_jump(double t) const {
+  for (const auto& drive : mechanism_.model().drives) {
+    const double before = model::derivatives(drive.law, t, model::Side::left).rate;
+    const double after = model::derivatives(drive.law, t, model::Side::right).rate;
+    if (!(std::abs(after - before) <= 1e-12 * (std::abs(after) + std::abs(before)))) return true;
+  }
+  return false;
 }
 
-void MechanismTimeline::release(system::State& state) {
+bool MechanismTimeline::project(system::State& state, double& energy_lost) {
+  std::fill(state.rubbing.begin(), state.rubbing.end(), model::friction_free);
+  const ConsistentStart projected = make_consistent(equations_, state, model::Side::right);
+  if (!projected.is_consistent) return false;
+  energy_lost = projected.energy_lost;
+  impulsive_work_ += projected.drive_work;
+  state = projected.state;
+  return true;
+}
+
+bool MechanismTimeline::restart(system::State& state) {
+  const std::vector<int> old = state.rubbing;
+  double energy_lost = 0.0;
+  bool goes_on = false;
+  if (has_drive_jump(state.t))
+    goes_on = project(state, energy_lost) && settle_new_velocities(equations_, state);
+  else
+    goes_on = settle_friction(equations_, state, std::vector<char>(old.size(), 0));
+  note_friction(old, state);
+  return goes_on && release(state);
+}
+
+void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    const bool sticks = state.rubbing[i] == model::friction_sticks;
+    if ((old[i] == model::friction_sticks) != sticks)
+      events_.push_back({state.t, -1, sticks, 0.0, static_cast<int>(i)});
+  }
+}
+
+MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
+  Rubbing result;
+  result.candidates.assign(state.rubbing.size(), 0);
+  const std::vector<int> old = state.rubbing;
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
+    if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
+    result.has_changed = true;
+    if (old[i] != model::friction_sticks) {
+      result.candidates[i] = 1;
+    } else {
+      const double force = balanced_friction(i, state);
+      state.rubbing[i] = force < 0.0 ? model::friction_slides_up : model::friction_slides_down;
+    }
+  }
+  return result;
+}
+
+double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
+  balanced_ = state;
+  if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
+  return equations_.friction_force(i, balanced_.multiplier);
+}
+
+GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state) {
+  if (state.rubbing[i] == model::friction_sticks) {
+    const double held = std::abs(balanced_friction(i, state));
+    return {equations_.friction_limit(i, balanced_.multiplier) - held, 0.0};
+  }
+  const auto& s = mechanism_.model().frictions[i].s;
+  const double direction = model::sliding_direction(state.rubbing[i]);
+  equations_.go_to(state, model::Side::left);
+  const auto places = s.places();
+  std::vector<double> slope(places.size()), curvature(places.size() * places.size());
+  s.slope(state.q.data(), slope.data());
+  s.curvature(state.q.data(), 1.0, curvature.data());
+  const auto of = [](const Vector& x, Index place) { return place == ground ? 0.0 : x[place]; };
+  double second_rate = 0.0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    second_rate += slope[k] * of(state.acceleration, places[k]);
+    for (std::size_t l = 0; l < places.size(); ++l)
+      second_rate += of(state.v, places[k]) * curvature[k * places.size() + l] * of(state.v, places[l]);
+  }
+  return {direction * equations_.friction_rate(i), direction * second_rate};
+}
+
+bool MechanismTimeline::release(system::State& state) {
   for (std::size_t i = 0; i < row_.size(); ++i) {
     if (row_[i] < 0 || !is_watched(i, state) || state.phase[i] != model::lock_engaged) continue;
     if (!(guard_at(i, state).value < 0.0)) continue;
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
-    (void)find_acceleration(equations_, state, model::Side::right);
+    if (!find_acceleration(equations_, state, model::Side::right)) return false;
   }
+  return true;
 }
 
 bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state) const {
-  return !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
+  return lock >= row_.size() || !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
+}
+
+bool MechanismTimeline::has_rate(std::size_t i, const system::State& from) const {
+  if (i >= row_.size()) return from.rubbing[i - row_.size()] != model::friction_sticks;
+  return row_[i] < 0 || from.phase[i] == model::lock_open;
 }
 
 GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state) {
+  if (i >= row_.size()) return friction_guard(i - row_.size(), state);
   const model::Lock& lock = mechanism_.model().locks[i];
   std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
   const model::Motion motion{state.t, model::Side::left, state.q.data(), padded_.data() + 1, state.phase.data()};
@@ -88,11 +179,11 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
 Crossing MechanismTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
   Crossing first;
   const double h = to.t - from.t;
-  for (std::size_t i = 0; i < row_.size(); ++i) {
+  for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
     if (!is_watched(i, from)) continue;
     const GuardValue a = guard_at(i, from);
     const GuardValue b = guard_at(i, to);
-    const bool has_slope = row_[i] < 0 || from.phase[i] == model::lock_open;
+    const bool has_slope = has_rate(i, from);
     const double slope0 = has_slope ? h * a.rate : b.value - a.value, slope1 = has_slope ? h * b.rate : slope0;
     // A coordinate may cross and come back within a step: the cubic is searched in parts.
     constexpr int parts = 8;
@@ -120,15 +211,14 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const auto i = static_cast<std::size_t>(guard);
   GuardValue value = guard_at(i, to);
-  if (row_[i] >= 0 && from.phase[i] == model::lock_engaged)
-    value.rate = (value.value - guard_at(i, from).value) / (to.t - from.t);
+  if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from).value) / (to.t - from.t);
   return value;
 }
 
-bool MechanismTimeline::pass(const system::State& before, system::State& state, double shift) {
-  bool jumps = false;
-  const std::vector<int> old = state.phase;
-  Vector product;
+Passage MechanismTimeline::pass(const system::State& before, system::State& state, double shift) {
+  const std::vector<int> old = state.rubbing;
+  const Rubbing rubbing = rubbing_after(before, state);
+  bool jumps = rubbing.has_changed, has_impact = false;
   for (std::size_t i = 0; i < row_.size(); ++i) {
     if (!is_watched(i, before)) continue;
     GuardValue now = guard(static_cast<Index>(i), before, state);
@@ -139,15 +229,15 @@ bool MechanismTimeline::pass(const system::State& before, system::State& state, 
     const model::Lock& lock = mechanism_.model().locks[i];
     jumps = jumps || lock.is_rigid() || lock.is_latch || lock.damping > 0.0;
     if (!engages || !lock.is_rigid()) continue;
-    const ConsistentStart projected = make_consistent(equations_, state, model::Side::right);
-    if (!projected.is_consistent) continue;  // the next step fails, and says where
-    events_.back().energy_lost = projected.energy_lost;
-    state = projected.state;
+    if (!project(state, events_.back().energy_lost)) return Passage::fails;
+    has_impact = true;
   }
-  if (!find_acceleration(equations_, state, model::Side::right)) return true;
-  release(state);
+  const bool is_settled =
+      has_impact ? settle_new_velocities(equations_, state) : settle_friction(equations_, state, rubbing.candidates);
+  note_friction(old, state);
+  if (!is_settled || !release(state)) return Passage::fails;
   shift_acceleration(equations_, state, shift);
-  return jumps;
+  return jumps ? Passage::restarts : Passage::continues;
 }
 
 }  // namespace rubato::integrate

@@ -9,23 +9,28 @@
 
 namespace rubato::integrate {
 
-/// A lock that engaged or let go.
+/// A lock that engaged or let go, or a joint whose friction held or let go.
 struct LockEvent {
   double t = 0.0;
-  int lock = -1;
+  int lock = -1;  ///< -1: it is a friction
   bool has_engaged = true;
   double energy_lost = 0.0;  ///< kinetic energy that the projection of the velocities took away [J]
+  int friction = -1;
 };
 
-/// The timeline of a mechanism: rows of tables of loads, and its locks, guard i watching lock i.
+/// The timeline of a mechanism: rows of tables of loads and drives, its locks and the friction of its joints: guard i
+/// watches lock i, and after the locks come the frictions.
 ///
 ///   open                      sign (at - s)                  the coordinate reaches the lock
 ///   at a stop with stiffness  sign (stiffness (s - at) + damping s')   its force would pull
 ///   at a stop without         sign times its multiplier
 ///   latched                   nothing any more
+///   slides                    s' in the direction in which it slides
+///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
 ///
 /// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and
-/// the multipliers of equilibrium. No energy can appear: it is located, and the projection only takes.
+/// the multipliers of equilibrium. A drive whose prescribed velocity jumps does the same: it gives the impulse, whose
+/// work is booked. No other energy can appear: it is located, and the projection only takes.
 class MechanismTimeline final : public Timeline {
  public:
   /// @param resolution  [s]
@@ -33,20 +38,37 @@ class MechanismTimeline final : public Timeline {
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
-  void restart(system::State& state) override;
-  bool pass(const system::State& before, system::State& state, double shift) override;
+  bool restart(system::State& state) override;
+  Passage pass(const system::State& before, system::State& state, double shift) override;
   double resolution() const override { return resolution_; }
   Crossing first_crossing(const system::State& from, const system::State& to, double least) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
   const std::vector<LockEvent>& events() const { return events_; }
+  /// What drives gave so far as their velocities jumped, or locks did against them [J].
+  double impulsive_work() const { return impulsive_work_; }
 
  private:
+  struct Rubbing {
+    bool has_changed = false;
+    std::vector<char> candidates;
+  };
+  /// The friction of a joint with the multipliers of equilibrium, which stay in balanced_.
+  double balanced_friction(std::size_t friction, const system::State& state);
+  GuardValue friction_guard(std::size_t friction, const system::State& state);
+  /// Which frictions a step ended in: those that slide no more, and those that let go.
+  Rubbing rubbing_after(const system::State& before, system::State& state);
+  /// Notes what friction did since `old`.
+  void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
   GuardValue guard_at(std::size_t lock, const system::State& state);
+  bool has_rate(std::size_t guard, const system::State& from) const;
   bool is_watched(std::size_t lock, const system::State& state) const;
-  /// Opens rigid stops that would pull after a jump.
-  void release(system::State& state);
+  /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
+  bool release(system::State& state);
+  bool has_drive_jump(double t) const;
+  /// Velocities, accelerations and multipliers that the constraints allow from now on, friction left out.
+  bool project(system::State& state, double& energy_lost);
 
   const system::Mechanism& mechanism_;
   system::MechanismEquations equations_;
@@ -55,7 +77,9 @@ class MechanismTimeline final : public Timeline {
   Vector left_, right_;
   std::vector<Index> row_;  // of the constraint of each lock, or -1
   std::vector<double> padded_;
+  system::State balanced_;
   std::vector<LockEvent> events_;
+  double impulsive_work_ = 0.0;
 };
 
 }  // namespace rubato::integrate

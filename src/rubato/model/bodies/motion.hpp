@@ -12,11 +12,13 @@ namespace rubato::model {
 /// (x', y', angle'), of a spatial one the velocity in the axes of the world and the angular velocity in those of the
 /// node.
 struct Motion {
-  double t = 0.0;              ///< [s]
-  Side side = Side::right;     ///< which limit of a law that jumps at t
-  const double* q = nullptr;   ///< all numbers of all nodes
-  const double* v = nullptr;   ///< [n], after a zero: v[ground] is the velocity of whatever is fixed
-  const int* phase = nullptr;  ///< of the locks: see JointLock
+  double t = 0.0;                    ///< [s]
+  Side side = Side::right;           ///< which limit of a law that jumps at t
+  const double* q = nullptr;         ///< all numbers of all nodes
+  const double* v = nullptr;         ///< [n], after a zero: v[ground] is the velocity of whatever is fixed
+  const int* phase = nullptr;        ///< of the locks: see JointLock
+  const int* rubbing = nullptr;      ///< of the joints with friction: see JointFriction
+  const double* stuck_at = nullptr;  ///< where they last stuck [rad] or [m]
 };
 
 inline constexpr int plane_numbers = 3, space_numbers = 7;

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// Decides which joints with friction stick and which slide, and which way, in a state whose positions and velocities
+/// are known; accelerations and multipliers become those of equilibrium (of Coulomb's law).
+///
+/// A candidate, whose coordinate is at rest, sticks if that takes no more than mu N; otherwise it goes the way in which
+/// it is pulled. Of several the one that exceeds its limit most is let go first, and then the others are looked at
+/// again; one that would then move against its way is held. Joints that stick already are looked at like candidates;
+/// those that slide go on.
+/// @param candidates  of all joints with friction
+/// @return false where no acceleration is found
+bool settle_friction(system::MechanismEquations& equations, system::State& state, const std::vector<char>& candidates);
+
+/// The same where velocities are new (at the start, after an impact): joints at rest are candidates, the others slide
+/// as they move. Impulses are taken without friction: one of a preload is none in no time, one of a reaction is left
+/// out.
+bool settle_new_velocities(system::MechanismEquations& equations, system::State& state);
+
+}  // namespace rubato::integrate

@@ -1,0 +1,104 @@
+#include <rubato/model/build_parts.hpp>
+#include <rubato/model/mechanism_joint_laws.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+namespace rubato::model {
+namespace {
+
+MotionLaw motion_law(const MechanismAssembly& assembly, const DriveDescription& drive, const std::string& part) {
+  if (const auto* formula = std::get_if<TimeFormulaDescription>(&drive.law)) {
+    try {
+      return numerics::TimeFormula(formula->formula.expression, assembly.parameters);
+    } catch (const InvalidInput& fault) {
+      throw InvalidInput(drive.where, fmt::format("{}: drive: {}", part, fault.message()));
+    }
+  }
+  const TimeLaw law = build_time_law(std::get<TableDescription>(drive.law), assembly.parameters, part + ": drive");
+  const auto& table = std::get<TableLaw>(law);
+  if (table.beyond == TableLaw::Beyond::zero)
+    throw InvalidInput(drive.where, fmt::format("{}: drive: beyond = \"zero\" would make it jump; take \"hold\", or "
+                                                "extend the table \"{}\"",
+                                                part, table.source));
+  for (std::size_t i = 1; i < table.times.size(); ++i)
+    if (!(table.times[i] > table.times[i - 1]))
+      throw InvalidInput(drive.where, fmt::format("{}: drive: the table \"{}\" jumps at t = {} s, and nothing moves "
+                                                  "from one place to another at once; give its rows a time between",
+                                                  part, table.source, table.times[i]));
+  return table;
+}
+
+}  // namespace
+
+MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                   bool is_angle, double value) {
+  const DriveDescription& drive = *joint.motion;
+  if (joint.lock)
+    throw InvalidInput(joint.lock->where,
+                       fmt::format("{} has a drive and a lock: what is driven cannot lock; leave one out, or drive it "
+                                   "by a {}",
+                                   part, is_angle ? "moment" : "force"));
+  const MotionLaw law = motion_law(assembly, drive, part);
+  const numerics::TimeDerivatives start = derivatives(law, 0.0, Side::right);
+  if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
+    throw InvalidInput(drive.where, fmt::format("{}: the drive has no finite value, rate and second rate at t = 0 "
+                                                "({}, {}, {})",
+                                                part, start.value, start.rate, start.second_rate));
+  if (is_angle && !(std::abs(start.value - value) <= 2.0 * std::numbers::pi))
+    throw InvalidInput(drive.where,
+                       fmt::format("{}: the drive starts at {} rad, more than a turn away from the angle {} of the "
+                                   "configuration given; if degrees are meant, write \"... * pi/180\"",
+                                   part, start.value, value));
+  return law;
+}
+
+void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                   const PlaneCoordinate& s) {
+  const FrictionDescription& given = *joint.friction;
+  if (joint.motion)
+    throw InvalidInput(given.where,
+                       fmt::format("{} has a drive and friction: while the drive stands still nothing says "
+                                   "what each of them holds; give the friction to another joint, or "
+                                   "drive it by a {}",
+                                   part, s.is_angle() ? "moment" : "force"));
+  JointFriction friction;
+  friction.name = joint.name;
+  friction.s = s;
+  friction.joint = static_cast<int>(assembly.mechanism.joints.size()) - 1;
+  friction.coefficient = assembly.at_least_zero(given.coefficient, part + ": friction: coefficient");
+  if (given.radius) friction.coefficient *= assembly.positive(*given.radius, part + ": friction: radius");
+  if (given.preload)
+    friction.preload = assembly.at_least_zero(*given.preload, part + ": friction: preload");
+  else
+    friction.pressing_rows = s.is_angle() ? 2 : 1;
+  assembly.mechanism.add_friction(std::move(friction));
+}
+
+void take_force(MechanismAssembly& assembly, const ForceDescription& force) {
+  const std::string part = fmt::format("the force on \"{}\"", force.on);
+  Mechanism& mechanism = assembly.mechanism;
+  const Index coordinate = assembly.free_coordinate(force.on, force.where, "a force is on");
+  const TimeLaw law = build_time_law(force.law, assembly.parameters, part);
+  if (force.follows && !assembly.in_plane())
+    throw InvalidInput(force.follows_where,
+                       fmt::format("{}: a force that follows in space is not available yet: leave \"following\" out, "
+                                   "or place the mechanism in the plane",
+                                   part));
+  for (std::size_t i = 0; force.follows && i < mechanism.nodes.size(); ++i)
+    for (const std::size_t axis : {0u, 1u}) {
+      if (mechanism.nodes[i].place[axis] != coordinate) continue;
+      const auto node = static_cast<Index>(i);
+      const Axis at =
+          force.at.empty() ? assembly.position(node) : assembly.point(force.at, force.at_where, part + ": at");
+      mechanism.add_following_force(part, mechanism.plane_point(node, at[0], at[1]), axis, law);
+      return;
+    }
+  // A moment of the plane is the same however its node turns.
+  mechanism.forces.push_back({coordinate, law});
+}
+
+}  // namespace rubato::model

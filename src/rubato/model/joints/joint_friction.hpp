@@ -1,0 +1,85 @@
+#pragma once
+
+#include <rubato/model/joints/joint.hpp>
+#include <rubato/model/joints/plane_coordinate.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rubato::model {
+
+/// What the friction of a joint does now; kept in the state, changed by events only.
+enum FrictionPhase : int {
+  friction_free = 0,  ///< not known yet, or left out (static equilibrium, modes, the instant of an impact): no force
+  friction_sticks = 1,
+  friction_slides_up = 2,    ///< s grows
+  friction_slides_down = 3,  ///< s shrinks
+};
+
+/// Coulomb friction on the coordinate s of a joint, with the limit L = mu (preload + |pressing multipliers|), of an
+/// angle times the radius of the pin:
+///
+///   slides   the force -sign(s') L on s, sign(s') by the phase
+///   sticks   the constraint s = where it stopped, until its multiplier reaches L
+///
+/// The multipliers are those of the same instant.
+struct JointFriction {
+  std::string name;  ///< of the joint
+  PlaneCoordinate s;
+  double coefficient = 0.0;  ///< mu [-]; of an angle mu times the radius [m]
+  double preload = 0.0;      ///< [N]
+  int joint = -1;            ///< whose parts rub, among the mechanism's joints
+  int pressing_rows = 0;     ///< so many of its rows, the first ones, press with the norm of their multipliers
+  int sticking_joint = -1;   ///< the constraint that holds it
+
+  bool follows_reaction() const { return pressing_rows > 0; }
+};
+
+/// The direction in which a joint slides: +1, -1, or 0 if it does not.
+inline double sliding_direction(int phase) {
+  return phase == friction_slides_up ? 1.0 : phase == friction_slides_down ? -1.0 : 0.0;
+}
+
+/// s = where it stopped while the joint sticks; nothing while it slides. Row "friction_moment" [N m] of an angle,
+/// "friction_force" [N] of a displacement.
+/// @tparam Coordinate  has places, value, slope and curvature, as PlaneCoordinate has
+template <class Coordinate>
+class StickingJoint final : public Joint {
+ public:
+  /// @param friction  whose phase it follows, among the mechanism's
+  StickingJoint(std::string name, Coordinate s, int friction)
+      : Joint(std::move(name)), s_(std::move(s)), friction_(friction) {
+    places_ = s_.places();
+    row_names_ = {s_.kind == Coordinate::Kind::angle ? "friction_moment" : "friction_force"};
+    curvature_.resize(places_.size() * places_.size());
+  }
+  std::unique_ptr<Joint> clone() const override { return std::make_unique<StickingJoint>(*this); }
+
+  void constraint(const Motion& motion, double* g, double* jacobian) const override {
+    g[0] = 0.0;
+    for (std::size_t i = 0; i < places_.size(); ++i) jacobian[i] = 0.0;
+    if (!is_active(motion)) return;
+    g[0] = s_.value(motion.q) - motion.stuck_at[friction_];
+    s_.slope(motion.q, jacobian);
+  }
+  void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
+    s_.curvature(motion.q, is_active(motion) ? multiplier[0] : 0.0, curvature);
+  }
+  void second_rate(const Motion& motion, double* out) const override {
+    s_.curvature(motion.q, is_active(motion) ? 1.0 : 0.0, curvature_.data());
+    const std::size_t k = places_.size();
+    out[0] = 0.0;
+    for (std::size_t i = 0; i < k; ++i)
+      for (std::size_t j = 0; j < k; ++j) out[0] += motion.v[places_[i]] * curvature_[i * k + j] * motion.v[places_[j]];
+  }
+  bool is_active(const Motion& motion) const override { return motion.rubbing[friction_] == friction_sticks; }
+  bool has_symmetric_curvature() const override { return Coordinate::has_symmetric_curvature; }
+
+ private:
+  Coordinate s_;
+  int friction_;
+  mutable std::vector<double> curvature_;
+};
+
+}  // namespace rubato::model
