@@ -44,12 +44,12 @@ struct Watched final : Observer, TryLog {
   std::vector<StepTry> tries;
 };
 
-struct Passage {
+struct Marched {
   AdaptiveReport report;
   Watched watched;
 };
 
-Passage run(const system::LocallyNonlinear& system, const std::string& name, double tolerance, bool locate,
+Marched run(const system::LocallyNonlinear& system, const std::string& name, double tolerance, bool locate,
             double end) {
   const Method method = make_method(name);
   const auto stepper = make_stepper(method, system);
@@ -57,7 +57,7 @@ Passage run(const system::LocallyNonlinear& system, const std::string& name, dou
   StepPlan plan;
   plan.locate_events = locate;
   plan.largest = end / 50.0;
-  Passage result;
+  Marched result;
   system::State state = consistent_start(system, system.start());
   result.report = march(*stepper, *estimator, plan, system, state, end, &result.watched, &result.watched);
   EXPECT_EQ(result.report.march.end, MarchEnd::reached);
@@ -65,7 +65,7 @@ Passage run(const system::LocallyNonlinear& system, const std::string& name, dou
 }
 
 /// The distance of the nearest step's end from a time.
-double distance(const Passage& run, double t) {
+double distance(const Marched& run, double t) {
   double least = HUGE_VAL;
   for (const auto& state : run.watched.states) least = std::min(least, std::abs(state.t - t));
   return least;
@@ -80,7 +80,7 @@ TEST_P(Slider, ChangesItsStateAtTheEndsOfSteps) {
   const auto system = testing::single_mass(0.15);
   const Truth truth(system, end);
   ASSERT_GT(truth.transitions.size(), 15u);
-  const Passage marched = run(system, GetParam(), 1e-7, true, end);
+  const Marched marched = run(system, GetParam(), 1e-7, true, end);
   EXPECT_EQ(marched.report.events, static_cast<long>(truth.transitions.size()));
   for (const Transition& transition : truth.transitions) EXPECT_LT(distance(marched, transition.t), 1e-6);
 }
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Slider,
                                            "dormand_prince"),
                          [](const auto& info) { return info.param; });
 
-double largest_error(const Passage& run, const system::LocallyNonlinear& system, double end) {
+double largest_error(const Marched& run, const system::LocallyNonlinear& system, double end) {
   std::vector<double> times;
   for (const auto& state : run.watched.states) times.push_back(state.t);
   const Truth truth(system, end, times);
@@ -111,13 +111,13 @@ TEST_P(Location, CostsNoAccuracyAndSparesThePairsRejections) {
   const double end = 30.0;
   const auto system = has_two_sliders ? testing::damper_model(10.0, 7.7, -8.0) : testing::single_mass(0.15);
   for (const double tolerance : {1e-3, 1e-4}) {
-    const Passage without = run(system, method, tolerance, false, end),
+    const Marched without = run(system, method, tolerance, false, end),
                   with = run(system, method, tolerance, true, end);
     EXPECT_EQ(without.report.events, 0);
     EXPECT_GT(with.report.events, 30);
     EXPECT_EQ(with.report.restarts, with.report.events);
     if (method == "generalized_alpha") {
-      const auto effort = [&](const Passage& run) {
+      const auto effort = [&](const Marched& run) {
         return largest_error(run, system, end) * std::pow(static_cast<double>(run.report.march.steps), 2);
       };
       EXPECT_LT(with.report.rejected, std::max(2l, without.report.rejected + 1)) << tolerance;
