@@ -4,7 +4,7 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
-#include <rubato/numerics/ordered_ldlt.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/assemble.hpp>
 
 #include "measure.hpp"
@@ -112,13 +112,13 @@ class BareLoop {
     }
     benchmarks::keep(q_[0]);
   }
-  double factor_bytes() const { return 12.0 * static_cast<double>(factor_.factor_entries()); }
+  double factor_bytes() const { return static_cast<double>(factor_.bytes()); }
 
  private:
   const system::LocallyNonlinear& system_;
   double h_;
   Vector q_, v_, a_, right_;
-  numerics::OrderedLdlt factor_;
+  numerics::OrderedFactor factor_;
 };
 
 void compare_steps(const system::LocallyNonlinear& system, const system::State& start, double h) {

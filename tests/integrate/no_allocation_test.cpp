@@ -73,6 +73,7 @@ TEST(Step, AllocatesNothing) {
     EXPECT_EQ(allocations_of_a_thousand_steps(testing::chain(40, 5, 0.05), method), 0) << method;
     EXPECT_EQ(allocations_of_a_thousand_steps(testing::chain(150, 12, 0.05), method), 0) << method;
   }
+  EXPECT_EQ(allocations_of_a_thousand_steps(testing::plate(20, 4, 0.02), "generalized_alpha"), 0);
 }
 
 long allocations_of_steps(const system::Mechanism& mechanism) {

@@ -1,12 +1,10 @@
 #include <rubato/numerics/complex_ldlt.hpp>
 
-#include <camd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <numeric>
+#include <utility>
 
 namespace rubato::numerics {
 
@@ -30,33 +28,12 @@ inline Complex inverse(Complex a) {
 void ComplexLdlt::analyse(const SparseMatrix& pattern, std::span<const int> last) {
   n_ = pattern.rows();
   const auto n = static_cast<std::size_t>(n_);
-  order_.resize(n);
-  std::vector<int> constraint(n, 0);
-  for (const int row : last) constraint[static_cast<std::size_t>(row)] = 1;
-  double control[CAMD_CONTROL], info[CAMD_INFO];
-  camd_defaults(control);
-  const int status = camd_order(static_cast<int>(n_), pattern.outerIndexPtr(), pattern.innerIndexPtr(), order_.data(),
-                                control, info, last.empty() ? nullptr : constraint.data());
-  if (status != CAMD_OK && status != CAMD_OK_BUT_JUMBLED) throw std::bad_alloc();
-  position_.resize(n);
-  for (std::size_t place = 0; place < n; ++place) position_[static_cast<std::size_t>(order_[place])] = int(place);
-
-  // Elimination tree and the length of each column: row k of L holds the paths from its entries up to k.
-  parent_.assign(n, -1);
-  mark_.assign(n, -1);
-  std::vector<int> count(n, 0);
-  for (int k = 0; k < int(n_); ++k) {
-    mark_[std::size_t(k)] = k;
-    for (SparseMatrix::InnerIterator entry(pattern, order_[std::size_t(k)]); entry; ++entry)
-      for (int i = position_[std::size_t(entry.row())]; i < k && mark_[std::size_t(i)] != k;
-           i = parent_[std::size_t(i)]) {
-        if (parent_[std::size_t(i)] < 0) parent_[std::size_t(i)] = k;
-        ++count[std::size_t(i)];
-        mark_[std::size_t(i)] = k;
-      }
-  }
+  order_ = minimum_degree(pattern, last);
+  EliminationTree tree = elimination_tree(pattern, order_);
   start_.assign(n + 1, 0);
-  for (std::size_t i = 0; i < n; ++i) start_[i + 1] = start_[i] + count[i];
+  for (std::size_t i = 0; i < n; ++i) start_[i + 1] = start_[i] + tree.count[i] - 1;
+  parent_ = std::move(tree.parent);
+  mark_.assign(n, -1);
   row_.resize(static_cast<std::size_t>(start_[n]));
   value_.resize(row_.size());
   inverse_pivot_.resize(n);
@@ -75,8 +52,8 @@ Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& sc
     mark_[std::size_t(k)] = k;
     int top = int(n_);
     Complex diagonal = 0.0;
-    for (SparseComplexMatrix::InnerIterator entry(matrix, order_[std::size_t(k)]); entry; ++entry) {
-      int i = position_[std::size_t(entry.row())];
+    for (SparseComplexMatrix::InnerIterator entry(matrix, order_.row[std::size_t(k)]); entry; ++entry) {
+      int i = order_.place[std::size_t(entry.row())];
       if (i > k) continue;
       if (i == k) {
         diagonal += entry.value();
@@ -103,7 +80,7 @@ Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& sc
       value_[std::size_t(end)] = multiplier;
       ++filled_[j];
     }
-    const double least = tiny * scale[order_[std::size_t(k)]];
+    const double least = tiny * scale[order_.row[std::size_t(k)]];
     if (std::max(std::abs(diagonal.real()), std::abs(diagonal.imag())) < least) {
       diagonal = {0.0, least};
       ++replaced;
@@ -116,7 +93,7 @@ Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& sc
 void ComplexLdlt::solve(Eigen::Ref<Eigen::MatrixXcd> x) const {
   std::vector<Complex> y(static_cast<std::size_t>(n_));
   for (Index column = 0; column < x.cols(); ++column) {
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = x(order_[i], column);
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = x(order_.row[i], column);
     for (std::size_t j = 0; j < y.size(); ++j)
       for (int p = start_[j]; p < start_[j + 1]; ++p)
         y[std::size_t(row_[std::size_t(p)])] -= product(value_[std::size_t(p)], y[j]);
@@ -126,7 +103,7 @@ void ComplexLdlt::solve(Eigen::Ref<Eigen::MatrixXcd> x) const {
         sum -= product(value_[std::size_t(p)], y[std::size_t(row_[std::size_t(p)])]);
       y[j] = sum;
     }
-    for (std::size_t i = 0; i < y.size(); ++i) x(order_[i], column) = y[i];
+    for (std::size_t i = 0; i < y.size(); ++i) x(order_.row[i], column) = y[i];
   }
 }
 
@@ -134,7 +111,7 @@ void ComplexLdlt::reach(const SparseMatrix& columns, Index column, std::vector<i
   rows.clear();
   std::fill(mark_.begin(), mark_.end(), -1);
   for (SparseMatrix::InnerIterator entry(columns, column); entry; ++entry)
-    for (int i = position_[std::size_t(entry.row())]; i >= 0 && mark_[std::size_t(i)] < 0;
+    for (int i = order_.place[std::size_t(entry.row())]; i >= 0 && mark_[std::size_t(i)] < 0;
          i = parent_[std::size_t(i)]) {
       mark_[std::size_t(i)] = 0;
       rows.push_back(i);
@@ -163,7 +140,7 @@ void ComplexLdlt::condense(const SparseMatrix& columns, Eigen::MatrixXcd& out) {
     const Index column = sequence[b];
     const auto& own = rows[std::size_t(column)];
     for (SparseMatrix::InnerIterator entry(columns, column); entry; ++entry)
-      work_[std::size_t(position_[std::size_t(entry.row())])] += entry.value();
+      work_[std::size_t(order_.place[std::size_t(entry.row())])] += entry.value();
     auto& y = scaled[std::size_t(column)];
     y.reserve(own.size());
     for (const int j : own) {

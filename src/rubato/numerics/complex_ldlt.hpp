@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/core/types.hpp>
+#include <rubato/numerics/elimination_tree.hpp>
 
 #include <Eigen/SparseCore>
 
@@ -46,8 +47,9 @@ class ComplexLdlt {
   void reach(const SparseMatrix& columns, Index column, std::vector<int>& rows);
 
   Index n_ = 0;
-  std::vector<int> order_, position_, parent_;  // order_[place] = row
-  std::vector<int> start_, row_, filled_;       // L without its unit diagonal, by columns
+  EliminationOrder order_;
+  std::vector<int> parent_;
+  std::vector<int> start_, row_, filled_;  // L without its unit diagonal, by columns
   std::vector<std::complex<double>> value_, inverse_pivot_, work_;
   std::vector<int> mark_, path_;
 };

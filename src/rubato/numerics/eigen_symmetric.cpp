@@ -1,8 +1,8 @@
 #include <rubato/numerics/eigen_symmetric.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,6 @@ constexpr double least_pivot = 1e-11;  // relative: K with a smaller one is as g
 constexpr double safe_pivot = 1e-10;   // relative: the sign of a smaller one is not to be trusted
 constexpr double most_growth = 1e6;    // of pivots over the matrix: beyond, elimination without pivoting lost digits
 constexpr double distinct = 1e-7;      // relative gap that a count can stand in
-
-using Ldlt = Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
 
 struct Problem {
   SparseMatrix stiffness, mass;
@@ -48,14 +46,16 @@ Problem scaled(const SparseMatrix& stiffness, const SparseMatrix& mass) {
 class ShiftInvert {
  public:
   using Scalar = double;
-  ShiftInvert(const Problem& problem, const Ldlt& factor, const Matrix& found)
+  ShiftInvert(const Problem& problem, const OrderedFactor& factor, const Matrix& found)
       : factor_(factor), found_(found), weighted_(problem.mass * found), n_(problem.mass.rows()) {}
   Index rows() const { return n_; }
   Index cols() const { return n_; }
   void set_shift(double) {}  // factorised outside
   void perform_op(const double* x, double* y) const {
     Eigen::Map<Vector> result(y, n_);
-    result = factor_.solve(Eigen::Map<const Vector>(x, n_));
+    right_ = Eigen::Map<const Vector>(x, n_);
+    factor_.solve(right_, solution_);
+    result = solution_;
     project(result);
   }
   void project(Eigen::Ref<Vector> x) const {
@@ -63,9 +63,10 @@ class ShiftInvert {
   }
 
  private:
-  const Ldlt& factor_;
+  const OrderedFactor& factor_;
   const Matrix& found_;
   Matrix weighted_;
+  mutable Vector right_, solution_;
   Index n_;
 };
 
@@ -99,7 +100,8 @@ struct Search {
   bool has_converged = false;
 };
 
-Search search(const Problem& problem, const Ldlt& factor, double shift, const Matrix& found, Index wanted, int round) {
+Search search(const Problem& problem, const OrderedFactor& factor, double shift, const Matrix& found, Index wanted,
+              int round) {
   const Index n = problem.mass.rows();
   wanted = std::min(wanted, n - found.cols() - 1);
   Search result;
@@ -127,28 +129,24 @@ void rotate_to_modes(const Problem& problem, Matrix& shapes, Vector& eigenvalues
   eigenvalues = small.eigenvalues();
 }
 
-bool is_positive_definite(const Problem& problem, const Ldlt& factor) {
-  if (factor.info() != Eigen::Success) return false;
-  const Vector pivots = factor.vectorD(), size = factor.permutationP() * problem.size;
-  return (pivots.array() > least_pivot * size.array()).all() && std::isfinite(pivots.sum());
+bool is_safely_definite(const Problem& problem, const Vector& pivots) {
+  return (pivots.array() > least_pivot * problem.size.array()).all() && std::isfinite(pivots.sum());
 }
 
 // The number of eigenvalues below s; nothing where round-off could have turned a sign.
-std::optional<Index> eigenvalues_below(const Problem& problem, Ldlt& factor, double s) {
-  factor.factorize(problem.shifted(s));
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  const Vector pivots = factor.vectorD(), size = factor.permutationP() * problem.size;
-  const auto relative = pivots.array().abs() / size.array();
+std::optional<Index> eigenvalues_below(const Problem& problem, OrderedFactor& factor, double s) {
+  if (!factor.factorise(problem.shifted(s), Pivots::nonzero)) return std::nullopt;
+  const Vector pivots = factor.pivots();
+  const auto relative = pivots.array().abs() / problem.size.array();
   if (!(relative.minCoeff() > safe_pivot) || !(relative.maxCoeff() < most_growth)) return std::nullopt;
   return static_cast<Index>((pivots.array() < 0.0).count());
 }
 
 // A shift below the spectrum at which K - s M is safely positive definite; its factor is left in `factor`.
-double shift_below(const Problem& problem, Ldlt& factor, double start) {
+double shift_below(const Problem& problem, OrderedFactor& factor, double start) {
   double shift = start;
   for (int i = 0; i < 40; ++i) {
-    factor.factorize(problem.shifted(shift));
-    if (is_positive_definite(problem, factor)) return shift;
+    if (factor.factorise(problem.shifted(shift)) && is_safely_definite(problem, factor.pivots())) return shift;
     shift = shift == 0.0 ? -1e-6 : 10.0 * shift;
   }
   return shift;
@@ -156,7 +154,8 @@ double shift_below(const Problem& problem, Ldlt& factor, double start) {
 
 // How many modes are missing below the last one wanted: in the gap below it and those equal to it, all eigenvalues are
 // counted. Copies of the last one itself do not matter.
-std::optional<Index> missing_below(const Problem& problem, Ldlt& factor, const Vector& eigenvalues, Index wanted) {
+std::optional<Index> missing_below(const Problem& problem, OrderedFactor& factor, const Vector& eigenvalues,
+                                   Index wanted) {
   const Index held = eigenvalues.size();
   const double scale = std::max(std::abs(eigenvalues[held - 1]), least_pivot);
   const double margin = distinct * scale;
@@ -205,8 +204,8 @@ void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, SymmetricMo
 SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count) {
   const Index n = mass.rows();
   const Problem problem = scaled(stiffness, mass);
-  Ldlt factor;
-  factor.analyzePattern(problem.shifted(-1.0));
+  OrderedFactor factor;
+  factor.analyse(problem.shifted(-1.0));
   const Index wanted = std::min(n - 1, count + std::max<Index>(4, count / 8));
   SymmetricModes modes;
   Vector eigenvalues;
@@ -225,8 +224,8 @@ SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix
   modes.shapes = std::move(first.shapes);
   modes.has_converged = first.has_converged;
   modes.missing = -1;
-  Ldlt inertia;
-  inertia.analyzePattern(problem.shifted(-1.0));
+  OrderedFactor inertia;
+  inertia.analyse(problem.shifted(-1.0));
   for (int round = 1; round <= most_rounds && modes.shapes.cols() > 0; ++round) {
     rotate_to_modes(problem, modes.shapes, eigenvalues);
     modes.missing = missing_below(problem, inertia, eigenvalues, count).value_or(-1);
@@ -250,8 +249,8 @@ SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix
 
 std::optional<Index> modes_below(const SparseMatrix& stiffness, const SparseMatrix& mass, double value) {
   const Problem problem = scaled(stiffness, mass);
-  Ldlt factor;
-  factor.analyzePattern(problem.shifted(-1.0));
+  OrderedFactor factor;
+  factor.analyse(problem.shifted(-1.0));
   return eigenvalues_below(problem, factor, value / problem.unit_square);
 }
 

@@ -1,10 +1,10 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/assemble.hpp>
 #include <rubato/system/eliminate_supports.hpp>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +66,9 @@ void require_positive_definite(const SparseMatrix& mass, const std::vector<std::
                       "remove it",
                       names[static_cast<std::size_t>(i)], entries[i]));
   if (is_sum) return;
-  const Eigen::SimplicialLLT<SparseMatrix> factor(mass);
-  if (factor.info() != Eigen::Success)
+  numerics::OrderedFactor factor;
+  factor.analyse(mass);
+  if (!factor.factorise(mass))
     throw InvalidInput("the mass matrix is not positive definite: some motion of the coordinates has no mass");
 }
 

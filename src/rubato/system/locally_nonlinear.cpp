@@ -1,6 +1,5 @@
+#include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
-
-#include <Eigen/SparseCholesky>
 
 #include <cassert>
 
@@ -84,15 +83,17 @@ SparseMatrix LocallyNonlinear::closed_damping() const {
 
 struct EquilibriumAcceleration::Workspace {
   explicit Workspace(const LocallyNonlinear& s) : system(s), loads(s.loads()), force(s.size()) {
-    if (system.has_diagonal_mass())
+    if (system.has_diagonal_mass()) {
       inverse_mass = Vector(system.mass().diagonal()).cwiseInverse();
-    else
-      factor.compute(system.mass());
+    } else {
+      factor.analyse(system.mass());
+      factor.factorise(system.mass());  // positive definite: the system was assembled with that mass
+    }
   }
   const LocallyNonlinear& system;
   Loads loads;
   Vector force, inverse_mass;
-  Eigen::SimplicialLDLT<SparseMatrix> factor;
+  numerics::OrderedFactor factor;
 };
 
 EquilibriumAcceleration::EquilibriumAcceleration(const LocallyNonlinear& system)
@@ -109,7 +110,7 @@ void EquilibriumAcceleration::operator()(const State& state, Vector& acceleratio
   if (w.inverse_mass.size() > 0)
     acceleration = w.force.cwiseProduct(w.inverse_mass);
   else
-    acceleration = w.factor.solve(w.force);
+    w.factor.solve(w.force, acceleration);
 }
 
 }  // namespace rubato::system

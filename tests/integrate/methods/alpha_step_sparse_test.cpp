@@ -1,5 +1,6 @@
 #include <rubato/integrate/methods/alpha_step.hpp>
 #include <rubato/integrate/stepper.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 
 #include "support/models.hpp"
 
@@ -78,6 +79,14 @@ TEST(SparseAlphaStep, AgreesWithTheDenseOneForMassesThatOnlySlidersHold) {
   parts.stiffness = stiffness.sparseView();
   parts.damping = SparseMatrix(0.05 * parts.mass);
   expect_agreement(system::LocallyNonlinear(std::move(parts)));
+}
+
+TEST(SparseAlphaStep, AgreesWithTheDenseOneWhereThePatternFillsIn) {
+  const auto plate = testing::plate(20, 4, 0.02);
+  numerics::OrderedFactor factor;
+  factor.analyse(plate.stiffness());
+  ASSERT_TRUE(factor.has_panels());
+  expect_agreement(plate);
 }
 
 }  // namespace

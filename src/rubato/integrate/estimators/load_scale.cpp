@@ -1,6 +1,6 @@
 #include <rubato/integrate/estimators/load_scale.hpp>
 #include <rubato/integrate/estimators/mass_norm.hpp>
-#include <rubato/numerics/ordered_ldlt.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ double largest_of(const model::TimeLaw& law, double duration) {
 double size_under_loads(const system::LocallyNonlinear& system, double duration) {
   const system::Loads loads = system.loads();  // a copy: formulas are workspaces
   if (loads.terms().empty()) return 0.0;
-  numerics::OrderedLdlt factor;
+  numerics::OrderedFactor factor;
   const SparseMatrix held = system.stuck_stiffness() + 2.0 / (duration * duration) * system.mass();
   factor.analyse(held, {});
   if (!factor.factorise(held)) return 0.0;  // a stiffness that is not one: nothing is promised

@@ -1,6 +1,6 @@
 #include <rubato/integrate/contact_problem.hpp>
 #include <rubato/integrate/methods/alpha_step.hpp>
-#include <rubato/numerics/ordered_ldlt.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
 #include <array>
@@ -299,7 +299,7 @@ class SparseAlphaStep final : public AlphaStep {
   Index n_, m_, sliders_, k_ = 0;
   double h_ = 0.0;
   std::optional<Rayleigh> rayleigh_;
-  numerics::OrderedLdlt factor_;
+  numerics::OrderedFactor factor_;
   std::vector<Index> first_, second_;  // of each contact, among the last k places
   std::vector<int> order_, place_;     // elimination place -> coordinate, and back
   Vector mass_;                        // its diagonal; empty if it is not diagonal
