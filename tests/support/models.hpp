@@ -52,17 +52,12 @@ inline system::LocallyNonlinear damper_model(double normal_load = 10.0, double o
   return system::LocallyNonlinear(std::move(parts));
 }
 
-/// A chain of n masses from ground to ground, Rayleigh damping, with `sliders` sliders to the ground spread evenly.
-inline system::LocallyNonlinear chain(Index n, Index sliders, double limit = 0.5) {
+/// Unit masses with Rayleigh damping and `sliders` sliders to the ground spread evenly, under two harmonic loads.
+inline system::LocallyNonlinear unit_masses(Index n, const std::vector<Eigen::Triplet<double>>& stiffness,
+                                            Index sliders, double limit) {
   system::LocallyNonlinear::Parts parts;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Index i = 0; i < n; ++i) {
-    entries.emplace_back(i, i, 2.0);
-    if (i > 0) entries.emplace_back(i, i - 1, -1.0);
-    if (i + 1 < n) entries.emplace_back(i, i + 1, -1.0);
-  }
   parts.stiffness.resize(n, n);
-  parts.stiffness.setFromTriplets(entries.begin(), entries.end());
+  parts.stiffness.setFromTriplets(stiffness.begin(), stiffness.end());
   parts.mass.resize(n, n);
   parts.mass.setIdentity();
   parts.damping = 0.02 * parts.mass + 0.01 * parts.stiffness;
@@ -73,11 +68,20 @@ inline system::LocallyNonlinear chain(Index n, Index sliders, double limit = 0.5
   return system::LocallyNonlinear(std::move(parts));
 }
 
+/// A chain of n masses from ground to ground, with `sliders` sliders.
+inline system::LocallyNonlinear chain(Index n, Index sliders, double limit = 0.5) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index i = 0; i < n; ++i) {
+    entries.emplace_back(i, i, 2.0);
+    if (i > 0) entries.emplace_back(i, i - 1, -1.0);
+    if (i + 1 < n) entries.emplace_back(i, i + 1, -1.0);
+  }
+  return unit_masses(n, entries, sliders, limit);
+}
+
 /// Masses on a square grid, each joined by springs to all within three rows and columns and to the ground: a pattern
-/// with much fill-in; `sliders` sliders to the ground.
+/// with much fill-in.
 inline system::LocallyNonlinear plate(int side, Index sliders, double limit = 0.5) {
-  system::LocallyNonlinear::Parts parts;
-  const Index n = side * side;
   std::vector<Eigen::Triplet<double>> entries;
   const auto join = [&](int a, int b, double k) {
     entries.emplace_back(a, a, k);
@@ -85,23 +89,14 @@ inline system::LocallyNonlinear plate(int side, Index sliders, double limit = 0.
     entries.emplace_back(a, b, -k);
     entries.emplace_back(b, a, -k);
   };
-  for (int a = 0; a < n; ++a) {
+  for (int a = 0; a < side * side; ++a) {
     entries.emplace_back(a, a, 0.1);
     for (int b = 0; b < a; ++b) {
       const int rows = a / side - b / side, columns = a % side - b % side;
       if (rows <= 3 && columns >= -3 && columns <= 3) join(a, b, 1.0 / (rows * rows + columns * columns));
     }
   }
-  parts.stiffness.resize(n, n);
-  parts.stiffness.setFromTriplets(entries.begin(), entries.end());
-  parts.mass.resize(n, n);
-  parts.mass.setIdentity();
-  parts.damping = 0.02 * parts.mass + 0.01 * parts.stiffness;
-  for (Index i = 0; i < sliders; ++i)
-    parts.sliders.push_back({"s" + std::to_string(i + 1), (2 * i + 1) * n / (2 * sliders), ground, 1.0, limit});
-  parts.loads = system::Loads({harmonic(n / 3, 5.0, 0.7), harmonic(n / 2, 3.0, 0.7)});
-  for (Index i = 0; i < n; ++i) parts.coordinates.push_back("x" + std::to_string(i + 1));
-  return system::LocallyNonlinear(std::move(parts));
+  return unit_masses(side * side, entries, sliders, limit);
 }
 
 }  // namespace rubato::testing
