@@ -32,6 +32,25 @@ MotionLaw motion_law(const MechanismAssembly& assembly, const DriveDescription& 
   return table;
 }
 
+Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+             const FreeCoordinate& s, double value) {
+  const LockDescription& given = *joint.lock;
+  const bool is_angle = s.is_angle();
+  Lock lock;
+  lock.name = joint.name;
+  lock.s = s;
+  lock.is_latch = given.is_latch;
+  lock.at = is_angle ? assembly.angle(given.at, part + ": lock: at") : assembly.number(given.at, part + ": lock: at");
+  if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
+  if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
+  if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
+    throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
+                                                "comes by another {}",
+                                                part, lock.at, is_angle ? "angle" : "displacement"));
+  lock.sign = lock.at > value ? 1.0 : -1.0;
+  return lock;
+}
+
 }  // namespace
 
 MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
@@ -57,7 +76,7 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
 }
 
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const PlaneCoordinate& s) {
+                   const FreeCoordinate& s, int pressing_rows) {
   const FrictionDescription& given = *joint.friction;
   if (joint.motion)
     throw InvalidInput(given.where,
@@ -74,8 +93,16 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
   if (given.preload)
     friction.preload = assembly.at_least_zero(*given.preload, part + ": friction: preload");
   else
-    friction.pressing_rows = s.is_angle() ? 2 : 1;
+    friction.pressing_rows = pressing_rows;
   assembly.mechanism.add_friction(std::move(friction));
+}
+
+AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                 const FreeCoordinate& s, double value) {
+  if (!joint.lock) return {};
+  const Lock lock = lock_of(assembly, joint, part, s, value);
+  const int index = assembly.mechanism.add_lock(lock);
+  return lock.is_latch ? AtLock{index, false} : AtLock{};
 }
 
 void take_force(MechanismAssembly& assembly, const ForceDescription& force) {

@@ -96,7 +96,9 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   const double value = has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
   s.zero = s.value(assembly.start.data()) - value;
   mechanism.space_coordinates.push_back({joint.name, s});
-  if (has_laws) take_laws(assembly, joint, built.part, s, value);
+  // All of the force of a hinge presses on its pin; of a slide what is across its way.
+  if (joint.friction) take_friction(assembly, joint, built.part, s, s.is_angle() ? 3 : 2);
+  if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
 }
 
 double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
@@ -158,14 +160,6 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint) {
   const SpaceJointPlaces built = places_of(assembly, joint);
   const auto& [part, places, first, second] = built;
-  if (joint.lock)
-    throw InvalidInput(joint.lock->where, part +
-                                              ": locks are for mechanisms in the plane; in space give a law that "
-                                              "grows stiff, as moment = \"-1e5*max(angle - 1, 0)\"");
-  if (joint.friction)
-    throw InvalidInput(joint.friction->where, part +
-                                                  ": friction of a joint in space is not available yet: leave it out, "
-                                                  "give the joint \"damping\", or place the mechanism in the plane");
   Mechanism& mechanism = assembly.mechanism;
   const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});

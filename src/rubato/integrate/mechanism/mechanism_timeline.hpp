@@ -56,6 +56,8 @@ class MechanismTimeline final : public Timeline {
   /// The friction of a joint with the multipliers of equilibrium, which stay in balanced_.
   double balanced_friction(std::size_t friction, const system::State& state);
   GuardValue friction_guard(std::size_t friction, const system::State& state);
+  /// Where the mechanism is, for its joints, with padded_ and padded_acceleration_ set to the state.
+  model::Motion motion_of(const system::State& state);
   /// Which frictions a step ended in: those that slide no more, and those that let go.
   Rubbing rubbing_after(const system::State& before, system::State& state);
   /// Notes what friction did since `old`.
@@ -75,8 +77,8 @@ class MechanismTimeline final : public Timeline {
   double resolution_;
   system::Loads loads_;
   Vector left_, right_;
-  std::vector<Index> row_;  // of the constraint of each lock, or -1
-  std::vector<double> padded_;
+  std::vector<Index> row_;                            // of the constraint of each lock, or -1
+  std::vector<double> padded_, padded_acceleration_;  // after a zero
   system::State balanced_;
   std::vector<LockEvent> events_;
   double impulsive_work_ = 0.0;
