@@ -20,21 +20,12 @@ struct SpaceJointPlaces {
   SpaceFrame first, second;
 };
 
-/// Whether the axes of a node can turn, or are held.
-bool has_axes(const MechanismAssembly& assembly, Index node) {
-  const MechanismNode& n = assembly.mechanism.nodes[static_cast<std::size_t>(node)];
-  if (node == 0) return true;
-  for (std::size_t axis = 3; axis < 6; ++axis)
-    if (n.place[axis] == ground && assembly.fixed.count(n.name + "." + axis_names[axis]) == 0) return false;
-  return true;
-}
-
 /// A node that does not turn has no axes with which a joint could do more than hold its place.
 void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
   const bool holds_points_only = joint.type == Type::spherical || joint.type == Type::distance;
   for (std::size_t end = 0; end < 2; ++end) {
     const Index node = built.places.node[end];
-    if (has_axes(assembly, node)) continue;
+    if (assembly.has_axes(node)) continue;
     const bool is_at_node = built.places.at[end] == assembly.position(node);
     if (holds_points_only && is_at_node) continue;
     throw InvalidInput(joint.between_where[end],

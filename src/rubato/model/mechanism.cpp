@@ -90,6 +90,12 @@ PlanePoint Mechanism::plane_point(Index node, double x, double y) const {
   return {plane_node(node), {c * dx + s * dy, -s * dx + c * dy}};
 }
 
+SpacePoint Mechanism::space_point(Index node, const numerics::Vector3& at) const {
+  const SpaceNode place = space_node(node);
+  const std::vector<double> all = numbers();
+  return {place, place.rotation(all.data()).conjugate() * (at - place.position(all.data()))};
+}
+
 int Mechanism::add_lock(Lock lock) {
   const int index = static_cast<int>(locks.size());
   const AtLock when{index, true};
@@ -124,6 +130,17 @@ int Mechanism::add_friction(JointFriction friction) {
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
                                     const TimeLaw& law) {
   elements.push_back(make_following_force(name, point, axis, law));
+  following_laws.push_back(law);
+}
+
+void Mechanism::add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis,
+                                    const TimeLaw& law) {
+  elements.push_back(make_following_force(name, point, axis, law));
+  following_laws.push_back(law);
+}
+
+void Mechanism::add_fixed_moment(const std::string& name, Index node, std::size_t axis, const TimeLaw& law) {
+  elements.push_back(make_fixed_moment(name, space_node(node), axis, law));
   following_laws.push_back(law);
 }
 
