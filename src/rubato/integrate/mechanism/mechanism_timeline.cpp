@@ -33,6 +33,7 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
       right_(mechanism.size()),
       padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0),
       padded_acceleration_(padded_) {
+  transitions_.resize(mechanism.model().locks.size() + mechanism.model().frictions.size());
   for (const auto& lock : mechanism.model().locks)
     row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);
 }
@@ -93,6 +94,20 @@ void MechanismTimeline::note_friction(const std::vector<int>& old, const system:
   }
 }
 
+void MechanismTimeline::count_transition(std::size_t guard, const system::State& state) {
+  constexpr int most = 100;
+  constexpr double window = 1e9;  // over the resolution, 1e-12 of the run
+  constexpr double still = 1e-9;  // ten times what Newton's method leaves of positions
+  const auto& model = mechanism_.model();
+  const model::FreeCoordinate& s = guard < row_.size() ? model.locks[guard].s : model.frictions[guard - row_.size()].s;
+  const double value = s.value(state.q.data());
+  const double size = s.is_angle() ? 1.0 : 1.0 + state.q.cwiseAbs().maxCoeff();
+  Transitions& past = transitions_[guard];
+  if (!(std::abs(value - past.at) <= still * size && state.t - past.since <= window * resolution_))
+    past = {state.t, value, 0};
+  if (++past.count > most) chattering_ = static_cast<Index>(guard);
+}
+
 MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
   Rubbing result;
   result.candidates.assign(state.rubbing.size(), 0);
@@ -101,6 +116,7 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     result.has_changed = true;
+    count_transition(row_.size() + i, state);
     if (old[i] != model::friction_sticks) {
       result.candidates[i] = 1;
     } else {
@@ -220,6 +236,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     if (!is_watched(i, before)) continue;
     GuardValue now = guard(static_cast<Index>(i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
+    count_transition(i, state);
     const bool engages = state.phase[i] == model::lock_open;
     state.phase[i] = engages ? model::lock_engaged : model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), engages, 0.0});
@@ -232,7 +249,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
   const bool is_settled =
       has_impact ? settle_new_velocities(equations_, state) : settle_friction(equations_, state, rubbing.candidates);
   note_friction(old, state);
-  if (!is_settled || !release(state)) return Passage::fails;
+  if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;
   shift_acceleration(equations_, state, shift);
   return jumps ? Passage::restarts : Passage::continues;
 }
