@@ -1,6 +1,9 @@
+#include <rubato/core/error.hpp>
+
 #include <support/mechanism_study.hpp>
 #include <support/tilted_plane.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +13,7 @@
 namespace rubato {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::MechanismStudy;
 using testing::replaced;
 using testing::TiltedPlane;
@@ -140,6 +144,64 @@ TEST(SpaceJointFriction, StopsAPendulumInTheBandWhereFrictionHoldsIt) {
   EXPECT_LE(std::abs(moment * std::sin(ran.last("run", "angle", "pin"))), friction);
   EXPECT_NEAR(ran.last("run", "angular_velocity", "pin"), 0.0, 1e-9);
   EXPECT_NEAR(ran.last("run.energy", "residue"), 0.0, 1e-3);
+}
+
+// A bar on two pins through one hole, both dry: preloads add up, and the bar slips where the load passes their sum, one
+// newton metre and three. Shares of a reaction are not determined, and told.
+std::string on_two_pins(const std::string& second) {
+  return R"(
+[[body]]
+name = "bar"
+mass = 2.0
+inertia = [0.1, 0.1, 0.1]
+position = [0.5, 0.0, 0.0]
+[[joint]]
+name = "one"
+type = "revolute"
+between = ["ground", "bar"]
+at = [0.0, 0.0, 0.0]
+axis = [0.0, 0.0, 1.0]
+friction = { coefficient = 0.1, preload = 100.0, radius = 0.1 }
+[[joint]]
+name = "two"
+type = "revolute"
+between = ["ground", "bar"]
+at = [0.0, 0.0, 0.3]
+axis = [0.0, 0.0, 1.0]
+friction = { coefficient = 0.1, radius = 0.1, )" +
+         second + R"( }
+[[force]]
+on = "bar.rz"
+expression = "5*t"
+[gravity]
+acceleration = [0.0, 0.0, -9.81]
+[[analysis]]
+name = "run"
+type = "transient"
+step = 0.01
+duration = 1.0
+)";
+}
+
+TEST(SpaceJointFriction, AddsUpThePreloadsOfTwoPins) {
+  const MechanismStudy ran(on_two_pins("preload = 300.0"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& events = ran.table("run.events");
+  EXPECT_NEAR(events.rows.back()[0], 0.8, 1e-6);
+  // (0.1 + 2*0.5^2) angle'' = 5 (t - 0.8) from there: 5 (t - 0.8)^3/6 over it. The step errs by h^2/12 angle''' 0.2 s,
+  // 1.4e-5.
+  EXPECT_NEAR(ran.last("run", "angle", "one"), 5.0 * 0.008 / 6.0 / 0.6, 2e-5);
+}
+
+TEST(SpaceJointFrictionFault, NamesTheReactionThatNothingDetermines) {
+  try {
+    const MechanismStudy ran(on_two_pins("normal_load = \"reaction\""));
+    FAIL();
+  } catch (const InvalidInput& fault) {
+    EXPECT_THAT(fault.what(),
+                HasSubstr("the friction of \"two\" follows a reaction that is not determined: what \"two.x\" "
+                          "holds is held by other joints too"));
+  }
 }
 
 // A rotor of 0.1 kg m2 on an upright pin: its whole weight lies along the axis, and its shoulder rubs. From 5 rad/s it
