@@ -26,7 +26,9 @@ struct SpaceMotion {
     }
     for (std::size_t i = 1; i < padded.size(); ++i) padded[i] = draw(random);
   }
-  model::Motion motion() const { return {0.3, model::Side::right, q.data(), padded.data() + 1, nullptr}; }
+  model::Motion motion() const {
+    return {0.3, model::Side::right, q.data(), padded.data() + 1, phase.data(), rubbing.data(), stuck_at.data()};
+  }
 
   /// Moves a tangent coordinate.
   void move(Index place, double by) {
@@ -54,6 +56,8 @@ struct SpaceMotion {
     }
   }
   std::vector<double> q, padded;
+  std::vector<int> phase{1}, rubbing{1};  // a lock that is engaged, a friction that sticks
+  std::vector<double> stuck_at{0.2};
 };
 
 inline model::SpaceNode free_space_node(int i) {

@@ -279,6 +279,21 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
   }
 }
 
+void MechanismEquations::scale_loads(double factor, const Weights& weights, Vector& force) {
+  const double change = factor - 1.0;
+  if (change == 0.0) return;
+  force -= change * mechanism_.weight();
+  for (const auto& load : forces_) force[load.coordinate] -= change * model::value(load.law, motion_.t, motion_.side);
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    if (elements_[e]->role() != model::Element::Role::load) continue;
+    const ElementPlace& place = element_places_[e];
+    elements_[e]->tangent(motion_, weights.stiffness, weights.damping, local_.data(), matrix_.data());
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      force[place.place[i]] += change * local_[static_cast<std::size_t>(place.local[i])];
+    scatter(place, matrix_.data(), change);
+  }
+}
+
 std::vector<Index> MechanismEquations::redundant_rows() const {
   constexpr double left = 1e-8;  // E is a hundredth of it; rows at an angle of 1e-4 leave as much
   std::vector<Index> rows;

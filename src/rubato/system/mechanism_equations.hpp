@@ -36,6 +36,9 @@ class MechanismEquations {
     bool friction = false;    ///< with the slopes of the friction that reactions make, beside G^T
   };
   void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
+  /// Makes what linearise() wrote that of all loads times a factor: forces, gravity, laws of joints.
+  /// @param weights  those of linearise()
+  void scale_loads(double factor, const Weights& weights, Vector& force);
   /// Evaluates G alone, with g.
   void constraints(Vector& constraint);
   /// out += factor (G^T multiplier + the friction that these multipliers make), with the G evaluated last.
