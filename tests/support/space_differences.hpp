@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <support/joint_pattern.hpp>
+
 #include <random>
 #include <vector>
 
@@ -140,6 +142,7 @@ inline void expect_consistent_joint(const model::Joint& joint, const SpaceMotion
   joint.constraint(at.motion(), g.data(), jacobian.data());
   joint.curvature(at.motion(), multiplier.data(), curvature.data());
   joint.second_rate(at.motion(), second.data());
+  expect_pattern(joint, at.motion(), g, jacobian, multiplier, curvature);
   std::vector<double> unused(r * k), slopes(k * k, 0.0);
   for_each_slope(
       places, at, r, [&](const model::Motion& motion, double* out) { joint.constraint(motion, out, unused.data()); },
