@@ -235,6 +235,49 @@ type = "static"
   EXPECT_NEAR(moment * moment, 2.0 * thrust * std::sin(turn), 5e-3 * moment * moment);
 }
 
+// A double pendulum that a thrust lifts a little: modes leave out the part of the stiffness that has no potential, and
+// say so. A thrust that stays along z has one.
+TEST(SpaceFollowingForces, AreToldWhereModesLeaveThemOut) {
+  const auto warnings = [](const std::string& following) {
+    const MechanismStudy ran(R"(
+[[body]]
+name = "pendulum"
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+position = [0.0, 0.0, -1.0]
+[[joint]]
+name = "pivot"
+type = "universal"
+between = ["ground", "pendulum"]
+at = [0.0, 0.0, 0.0]
+axis = [1.0, 0.0, 0.0]
+second_axis = [0.0, 1.0, 0.0]
+[[body]]
+name = "tip"
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+position = [0.0, 0.0, -2.0]
+[[joint]]
+name = "knee"
+type = "revolute"
+between = ["pendulum", "tip"]
+at = [0.0, 0.0, -1.5]
+axis = [1.0, 0.0, 0.0]
+stiffness = 20.0
+[gravity]
+acceleration = [0.0, 0.0, -9.81]
+[[force]]
+on = "tip.z"
+expression = "1.0"
+)" + following + "[[analysis]]\nname = \"run\"\ntype = \"modes\"\nabout = \"static\"\n");
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    return ran.report.warnings;
+  };
+  EXPECT_TRUE(warnings("").empty());
+  ASSERT_EQ(warnings("following = true\n").size(), 1u);
+  EXPECT_THAT(warnings("following = true\n")[0], HasSubstr("the stiffness is not symmetric"));
+}
+
 std::string verdict(const std::string& text) {
   try {
     const MechanismStudy ran(text);

@@ -251,10 +251,10 @@ model::Mechanism slide(bool is_rigid, bool is_latch, double force) {
   m.joints.push_back(model::make_plane_prismatic("slide", ground_point, point, {1.0, 0.0}, 0.0));
   model::Lock lock;
   lock.name = "slide";
-  model::PlaneCoordinate travel;
-  travel.kind = model::PlaneCoordinate::Kind::displacement;
-  travel.along = {ground_point, point, {1.0, 0.0}};
-  lock.s = travel;
+  model::PlaneCoordinate way;
+  way.kind = model::PlaneCoordinate::Kind::displacement;
+  way.along = {ground_point, point, {1.0, 0.0}};
+  lock.s = way;
   lock.is_latch = is_latch;
   lock.at = 1.5;
   lock.stiffness = is_rigid ? 0.0 : 800.0;
