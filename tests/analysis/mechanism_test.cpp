@@ -1,4 +1,6 @@
+#include <rubato/analysis/mechanism_failure.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/model/joints/plane_joints.hpp>
 
 #include <support/double_pendulum.hpp>
 #include <support/run_mechanism.hpp>
@@ -6,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace rubato {
@@ -219,6 +222,43 @@ TEST(MechanismStudies, FindTheEquilibriumOfSmallMechanisms) {
     const auto& table = ran.sink.tables.at("rest");
     EXPECT_NEAR(table.rows[0][table.column("position", "bob.z")], -length, 1e-8 * length);
   }
+}
+
+/// A window: two uprights of 1 m and a bar across, in a plane, hinged to the ground a metre apart.
+model::Mechanism window() {
+  model::Mechanism m(2);
+  const Index left = m.add_node("left", {0.0, 0.5, 0.5 * std::numbers::pi});
+  const Index right = m.add_node("right", {1.0, 0.5, 0.5 * std::numbers::pi});
+  const Index bar = m.add_node("bar", {0.5, 1.0, 0.0});
+  for (const Index node : {left, right, bar}) m.add_mass(node, 1.0, 1.0 / 12.0);
+  const auto pin = [&](const char* name, Index a, Index b, double x, double y) {
+    m.joints.push_back(model::make_plane_revolute(name, m.plane_point(a, x, y), m.plane_point(b, x, y)));
+  };
+  pin("left foot", 0, left, 0.0, 0.0);
+  pin("right foot", 0, right, 1.0, 0.0);
+  pin("left head", left, bar, 0.0, 1.0);
+  pin("right head", bar, right, 1.0, 1.0);
+  return m;
+}
+
+TEST(MechanismFailures, NameTheSingularConfigurationNextToWhichTheyAre) {
+  const system::Mechanism mechanism(window());
+  integrate::MarchReport report;
+  report.step.outcome = integrate::StepOutcome::too_small;
+  const auto message_at = [&](double angle) {
+    system::State state = mechanism.start();
+    const double c = std::cos(angle), s = std::sin(angle);
+    state.q.tail<9>() << 0.5 * c, 0.5 * s, angle, 1.0 + 0.5 * c, 0.5 * s, angle, 0.5 + c, s, 0.0;
+    return analysis::failure_of(report, mechanism, state);
+  };
+  // In line the four hinges ask twice that the bars keep their distance along it: nine coordinates and eight rows, of
+  // which seven say something of their own.
+  const std::string in_line = message_at(1e-5);
+  EXPECT_NE(in_line.find("next to a singular configuration, where \""), std::string::npos) << in_line;
+  const bool has_head = in_line.find("head\" says what other joints say") != std::string::npos;
+  const bool has_foot = in_line.find("foot\" says what other joints say") != std::string::npos;
+  EXPECT_TRUE(has_head != has_foot) << in_line;
+  EXPECT_EQ(message_at(0.1).find("singular"), std::string::npos);
 }
 
 TEST(MechanismStudies, SayWhatNothingResistsWhereThereIsNoEquilibrium) {

@@ -1,3 +1,4 @@
+#include <rubato/analysis/mechanism_failure.hpp>
 #include <rubato/analysis/mechanism_interpolation.hpp>
 #include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
@@ -105,69 +106,6 @@ class MechanismObserver final : public integrate::Observer {
   bool last_recorded_ = false;
 };
 
-/// @param guard  of the timeline: the locks, then the frictions
-std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
-  const auto& model = mechanism.model();
-  const auto i = static_cast<std::size_t>(guard);
-  if (i < model.locks.size()) return fmt::format("the lock of \"{}\"", model.locks[i].name);
-  return fmt::format("the friction of \"{}\"", model.frictions[i - model.locks.size()].name);
-}
-
-/// @param state       the last accepted one
-/// @param chattering  the guard that changed without end; -1: none
-std::string reason(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
-                   Index chattering) {
-  const std::string at =
-      report.step.worst >= 0
-          ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
-          : "";
-  std::string what, remedy;
-  switch (report.step.outcome) {
-    case integrate::StepOutcome::not_finite:
-      what = "a number that is not finite appeared" + at;
-      remedy = "look at the loads and laws that act there at that time";
-      {
-        system::MechanismEquations equations(mechanism);
-        state.t = report.failed_at + report.failed_step;
-        equations.go_to(state, model::Side::left);
-        const std::string part = equations.non_finite_part();
-        if (!part.empty()) remedy = "it comes from " + part;
-      }
-      break;
-    case integrate::StepOutcome::not_converged:
-      what = "Newton's method found no solution" + at;
-      remedy =
-          "look for a drive against a lock, for joints that leave no way to go on (a singular configuration), or allow "
-          "smaller steps";
-      break;
-    case integrate::StepOutcome::singular:
-      what = "the matrix of the step cannot be factorised";
-      remedy = "look for parts that nothing holds, or take smaller steps";
-      break;
-    case integrate::StepOutcome::too_small:
-      what = "the error asked for a step below the smallest";
-      remedy =
-          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller step, "
-          "or "
-          "a larger tolerance";
-      break;
-    case integrate::StepOutcome::no_way_on:
-      if (chattering >= 0) {
-        what = chattering_part(chattering, mechanism) + " changed a hundred times, and nothing moved";
-        remedy =
-            "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, or take "
-            "\"friction\" in its place), and for a load that jumps as the joint begins to move";
-        break;
-      }
-      what = "no velocities and accelerations were found that the joints and locks allow from then on";
-      remedy = "look for a drive against a lock, or for locks and drives that contradict each other there";
-      break;
-    case integrate::StepOutcome::accepted:
-      break;
-  }
-  return fmt::format("at t = {} s with the step {} s {}; {}", report.failed_at, report.failed_step, what, remedy);
-}
-
 /// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
 void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism,
                    std::vector<std::string>& findings) {
@@ -201,6 +139,7 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   integrate::NewtonPlan newton;
   newton.projects_velocities =
       plan.project_velocities || std::holds_alternative<integrate::PiControl>(step.plan.controller);
+  newton.avoids_singular_ends = !std::holds_alternative<integrate::FixedStep>(step.plan.controller);
   const auto stepper = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
   const auto estimator = integrate::make_estimator(step.estimator, alpha, integrate::make_error_space(mechanism),
                                                    transient.start, transient.duration);
@@ -231,7 +170,7 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   report_events(timeline.events(), mechanism, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = reason(report.march, mechanism, state, timeline.chattering());
+    run.message = failure_of(report.march, mechanism, state, timeline.chattering());
   } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);

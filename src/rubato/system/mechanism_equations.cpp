@@ -320,8 +320,7 @@ void MechanismEquations::scale_loads(double factor, const Weights& weights, Vect
   }
 }
 
-std::vector<Index> MechanismEquations::redundant_rows() const {
-  constexpr double left = 1e-8;  // E is a hundredth of it; rows at an angle of 1e-4 leave as much
+std::vector<Index> MechanismEquations::redundant_rows(double left) const {
   std::vector<Index> rows;
   for (std::size_t r = 0; r < row_seen_.size(); ++r) {
     const auto row = static_cast<Index>(r);
@@ -329,6 +328,14 @@ std::vector<Index> MechanismEquations::redundant_rows() const {
       rows.push_back(row);
   }
   return rows;
+}
+
+int MechanismEquations::hardly_held_rows() const {
+  constexpr double left = 10.0 * share;
+  int count = 0;
+  for (std::size_t r = 0; r < row_seen_.size(); ++r)
+    if (std::abs(factor_.pivot(mechanism_.size() + static_cast<Index>(r))) < left * row_seen_[r]) ++count;
+  return count;
 }
 
 void MechanismEquations::add_constraint_force(const Vector& multiplier, double factor, Vector& out) const {

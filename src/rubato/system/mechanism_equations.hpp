@@ -51,7 +51,10 @@ class MechanismEquations {
   bool factorise() { return factor_.factorise(); }
   /// Rows of constraints that repeat those before them, as the last factors found: what is left of them after the
   /// elimination of everything that they join is round-off.
-  std::vector<Index> redundant_rows() const;
+  /// @param left  the share of a row that counts as nothing; E is 1e-10. Rows at an angle leave its square.
+  std::vector<Index> redundant_rows(double left = 1e-8) const;
+  /// How many rows leave so little that E weighs a tenth and more: redundant, or in a configuration where they are.
+  int hardly_held_rows() const;
   /// Whether the last matrix was positive definite on the motions that the constraints leave (where it is symmetric).
   bool is_positive() const { return factor_.negative_pivots() <= mechanism_.constraint_count(); }
   /// Solves with the factors; (x, y) is overwritten by the solution.

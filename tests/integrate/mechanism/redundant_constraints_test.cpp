@@ -1,7 +1,10 @@
+#include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
 
 #include <gtest/gtest.h>
@@ -135,6 +138,69 @@ TEST(FourBars, PassTheirSingularPositionsAndStayAPendulum) {
       }
       last = error;
     }
+  }
+}
+
+/// Two windows whose uprights stand at an angle from the line of the hinges and turn by -5 rad/s.
+system::State windows_near_line(const system::Mechanism& mechanism, double angle) {
+  system::State state = mechanism.start();
+  const double c = std::cos(angle), s = std::sin(angle), rate = -5.0;
+  for (Index bar = 0; bar < 5; ++bar) {
+    const bool is_upright = bar < 3;
+    const double at = double(is_upright ? bar : bar - 3), reach = is_upright ? 0.5 : 1.0;
+    state.q.segment<3>(3 * (bar + 1)) << at + (is_upright ? 0.0 : 0.5) + reach * c, reach * s, is_upright ? angle : 0.0;
+    state.v.segment<3>(3 * bar) << -reach * s * rate, reach * c * rate, is_upright ? rate : 0.0;
+  }
+  system::MechanismEquations equations(mechanism);
+  const ConsistentStart start = make_consistent(equations, state);
+  EXPECT_TRUE(start.is_consistent);
+  EXPECT_LT(start.position_moved, 1e-12);
+  return start.state;
+}
+
+TEST(FourBars, EndNoStepInLineWhereThatIsAvoided) {
+  const system::Mechanism mechanism(windows(2));
+  const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
+  NewtonPlan plan;
+  const auto plain = make_mechanism_stepper(method, mechanism, plan);
+  plan.avoids_singular_ends = true;
+  const auto careful = make_mechanism_stepper(method, mechanism, plan);
+  const system::State from = windows_near_line(mechanism, 1e-3);
+  double h = 2e-4;
+  system::State to = from;
+  // The angle falls almost evenly: each correction of the step leaves a hundredth and less of the last.
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_EQ(plain->attempt(from, h, h, to).outcome, StepOutcome::accepted);
+    h += (to.q[5] - 1e-6) / 5.0;
+  }
+  EXPECT_EQ(plain->attempt(from, h, h, to).outcome, StepOutcome::accepted);
+  EXPECT_EQ(careful->attempt(from, h, h, to).outcome, StepOutcome::not_converged);
+  for (const double other : {0.5 * h, 1.5 * h}) {
+    ASSERT_EQ(careful->attempt(from, other, other, to).outcome, StepOutcome::accepted);
+    EXPECT_NEAR(to.q[8], to.q[5], 1e-9) << "the uprights are parallel";
+  }
+}
+
+TEST(FourBars, PassTheirSingularPositionsWithStepsThatChooseThemselves) {
+  const system::Mechanism mechanism(windows(2));
+  const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
+  NewtonPlan newton;
+  newton.projects_velocities = newton.avoids_singular_ends = true;
+  const auto stepper = make_mechanism_stepper(method, mechanism, newton);
+  system::MechanismEquations equations(mechanism);
+  const double turn = turn_of_windows(2, 10.0);
+  for (const double tolerance :
+       {7.828387513238776e-7, 4.20814403927705e-7}) {  // two of which some step would end in line to 1e-6 rad
+    system::State state = make_consistent(equations, mechanism.start()).state;
+    const auto estimator = make_estimator(LocalError{tolerance}, std::get<GeneralizedAlpha>(method.formula),
+                                          make_error_space(mechanism), state, 10.0);
+    StepPlan plan;
+    plan.smallest = 1e-11;
+    plan.largest = 0.2;
+    MechanismTimeline timeline(mechanism, 1e-11);
+    const auto report = march(*stepper, *estimator, plan, timeline, state, 10.0);
+    EXPECT_EQ(report.march.end, MarchEnd::reached) << tolerance;
+    EXPECT_LT(std::abs(0.5 * std::numbers::pi - turn - state.q[5]), 3e3 * std::pow(report.largest_step, 2));
   }
 }
 

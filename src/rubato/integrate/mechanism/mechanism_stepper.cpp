@@ -33,6 +33,7 @@ class MechanismStepper final : public Stepper {
   }
 
   StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    if (plan_.avoids_singular_ends) count_usual_redundancy(from);
     const double mean = (1.0 - p_.alpha_f) / (1.0 - p_.alpha_m);
     scale_ = mean * p_.beta * h * h;
     to.t = t1;
@@ -76,7 +77,10 @@ class MechanismStepper final : public Stepper {
       const double ratio = iteration == 0 ? 1.0 : size / last;
       const bool is_done =
           iteration == 0 ? size <= round_off * tolerance_ : ratio < 1.0 && size * ratio / (1.0 - ratio) <= tolerance_;
-      if (is_done) return finish(from, h, to);
+      if (is_done) {
+        const bool is_held = !plan_.avoids_singular_ends || equations_.hardly_held_rows() <= usual_;
+        return is_held ? finish(from, h, to) : fault(StepOutcome::not_converged);
+      }
       if (iteration > 0) {
         if (is_fresh && ratio > 2.0) return fault(StepOutcome::not_converged);
         needs_factors = ratio > 0.1;
@@ -123,6 +127,18 @@ class MechanismStepper final : public Stepper {
     return fault(StepOutcome::not_finite);
   }
 
+  /// How many rows repeat others in the configuration of the start, with the locks and the friction of now.
+  void count_usual_redundancy(const system::State& now) {
+    if (usual_ >= 0 && now.phase == usual_for_.phase && now.rubbing == usual_for_.rubbing) return;
+    usual_for_ = mechanism_.start();
+    usual_for_.phase = now.phase;
+    usual_for_.rubbing = now.rubbing;
+    usual_for_.stuck_at = now.stuck_at;
+    equations_.go_to(usual_for_, model::Side::left);
+    equations_.linearise({}, usual_for_.multiplier, force_, constraint_);
+    usual_ = equations_.factorise() ? equations_.hardly_held_rows() : 0;
+  }
+
   void project(system::State& to) {
     equations_.go_to(to, model::Side::left);
     equations_.constraints(constraint_);
@@ -155,6 +171,8 @@ class MechanismStepper final : public Stepper {
   system::MechanismEquations equations_;
   Vector travel_, force_, product_, constraint_, multiplier_;
   double tolerance_ = 0.0, scale_ = 0.0;
+  system::State usual_for_;
+  int usual_ = -1;  // rows that repeat others; -1: not known yet
 };
 
 }  // namespace

@@ -17,6 +17,10 @@ struct NewtonPlan {
   /// positions leave it of second order; a step much shorter than the last turns what is left into accelerations of its
   /// size over the step, which an error per unit of time never accepts.
   bool projects_velocities = false;
+  /// Ends no step in a configuration in which more rows repeat each other than at the start (bars in line): positions
+  /// are hardly held there, by the square of the angle over the share E, and accelerations of a step take what is left.
+  /// Such a step does not converge; one of another length ends beyond.
+  bool avoids_singular_ends = false;
 };
 
 /// The generalized-alpha step of a mechanism with its constraints on positions (index 3; Arnold and Bruels 2007; on

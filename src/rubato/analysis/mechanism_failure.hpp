@@ -1,0 +1,17 @@
+#pragma once
+
+#include <rubato/integrate/driver.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <string>
+
+namespace rubato::analysis {
+
+/// Why a march of a mechanism ended before its time, with the names of the user's parts, and what may help. A singular
+/// configuration is named with the joints that repeat others there.
+/// @param state       the last accepted one
+/// @param chattering  the guard that changed without end; -1: none
+std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
+                       Index chattering);
+
+}  // namespace rubato::analysis
