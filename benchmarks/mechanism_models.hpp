@@ -120,6 +120,30 @@ inline model::Mechanism space_chain(int count) {
   return m;
 }
 
+/// Bricard's mechanism (IFToMM library, A04): five rods of 1 m and 1 kg, 0.1 m thick, along the edges of a cube, and
+/// six hinges, of whose conditions one repeats the others; at rest.
+inline model::Mechanism bricard() {
+  using numerics::Vector3;
+  model::Mechanism m(3);
+  const Vector3 corner[] = {{0, 0, 0}, {1, 0, 0}, {1, -1, 0}, {1, -1, 1}, {0, -1, 1}, {0, 0, 1}};
+  const Vector3 axis[] = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Vector3 rod = corner[i + 1] - corner[i];
+    const double across = (1.0 + 0.01) / 12.0, along = 0.02 / 12.0;
+    const Index node =
+        m.add_space_node("rod " + std::to_string(i + 1), corner[i] + 0.5 * rod, numerics::Rotation::Identity());
+    m.add_space_body(node, 1.0, (Vector3::Constant(across) + (along - across) * rod.cwiseAbs()).asDiagonal());
+  }
+  const std::vector<double> q = m.numbers();
+  for (Index i = 0; i < 6; ++i)
+    m.joints.push_back(
+        model::make_space_joint(model::SpaceJointKind::revolute, "hinge " + std::to_string(i + 1),
+                                model::frame_at(m.space_node(i), q.data(), corner[i], axis[i]),
+                                model::frame_at(m.space_node((i + 1) % 6), q.data(), corner[i], axis[i])));
+  m.gravity = {0.0, -9.81, 0.0};
+  return m;
+}
+
 /// A flexible pendulum: a steel strip of 10 m in `count` geometrically exact beams, pinned, level and at rest, with a
 /// rigid body of 20 kg pinned to its end.
 inline model::Mechanism flexible_pendulum(int count) {

@@ -100,13 +100,7 @@ std::string verdict(const std::string& text) {
   }
 }
 
-TEST(SpaceDriveFault, TellsWhatIsForThePlane) {
-  const std::string rubs = "friction = { coefficient = 0.1, preload = 1.0, radius = 0.1 }";
-  EXPECT_THAT(verdict(replaced(joined, "drive = \"10*t^2\"", rubs)),
-              HasSubstr("study.toml:14:12: error: joint \"motor\": friction of a joint in space is not available yet"));
-  const std::string force = "[[force]]\non = \"body.x\"\nexpression = \"1.0\"\nfollowing = true\n";
-  EXPECT_THAT(verdict(joined + force),
-              HasSubstr("the force on \"body.x\": a force that follows in space is not available yet"));
+TEST(SpaceDriveFault, NamesTheJointsThatTakeADrive) {
   EXPECT_THAT(verdict(centred("cylindrical\"", "\"t\"")),
               HasSubstr("\"drive\" belongs to a revolute, prismatic or screw joint, and this one is cylindrical"));
 }

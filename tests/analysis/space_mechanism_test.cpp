@@ -123,6 +123,23 @@ TEST(SpaceStudies, RollUpACantilever) {
   EXPECT_EQ(modes.sink.tables.at("modes").rows.size(), 4u);
 }
 
+// Two turns: the chords go round a regular polygon of ten sides twice. Under a moment about an axis of its end that
+// turns with it the strip springs out of its plane before, so that no way leads downhill to this equilibrium.
+TEST(SpaceStudies, RollUpACantileverTwice) {
+  const auto ran = run_mechanism_study(replaced(example("roll-up"), "turns = 1.0", "turns = 2.0"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("rolled");
+  EXPECT_LT(position_of(table, 0, "end").norm(), 1e-8);
+  EXPECT_LT(position_of(table, 0, "strip:10").norm(), 1e-8);
+  const Vector3 centre = position_of(table, 0, "strip:5") * 0.5;
+  const double radius = 0.5 / 20.0 / std::sin(pi / 10.0);
+  for (int i = 1; i < 20; ++i)
+    EXPECT_NEAR((position_of(table, 0, "strip:" + std::to_string(i)) - centre).norm(), radius, 1e-8) << i;
+  ASSERT_EQ(ran.report.findings.size(), 2u);
+  EXPECT_THAT(ran.report.findings[0], HasSubstr("the loads were raised in"));
+  EXPECT_THAT(ran.report.findings[1], HasSubstr("not stable"));
+}
+
 /// A wheel on an axle along (1, 2, 2)/3, driven by a constant moment.
 const std::string wheel = R"(
 [[body]]

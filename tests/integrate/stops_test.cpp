@@ -19,12 +19,12 @@ namespace {
 constexpr double m = 2.0, k = 800.0, gap = 0.05, v0 = 0.8;
 
 /// A free mass that flies at a stop on the ground.
-system::LocallyNonlinear flying_mass(double damping, bool is_between_two = false) {
+system::LocallyNonlinear flying_mass(double damping, bool is_between_two = false, double stiffness = k) {
   system::LocallyNonlinear::Parts parts;
   parts.mass = testing::sparse(m * Matrix::Identity(1, 1));
   parts.damping = parts.stiffness = SparseMatrix(1, 1);
-  parts.stops = {{"wall", 0, ground, gap, k, damping}};
-  if (is_between_two) parts.stops.push_back({"other", ground, 0, gap, k, damping});
+  parts.stops = {{"wall", 0, ground, gap, stiffness, damping}};
+  if (is_between_two) parts.stops.push_back({"other", ground, 0, gap, stiffness, damping});
   parts.start.q = Vector::Zero(1);
   parts.start.v = Vector::Constant(1, v0);
   parts.coordinates = {"mass"};
@@ -111,6 +111,22 @@ INSTANTIATE_TEST_SUITE_P(Methods, Impact,
                          ::testing::Values("generalized_alpha", "hht", "average_acceleration", "bogacki_shampine",
                                            "dormand_prince"),
                          [](const auto& info) { return info.param; });
+
+// A contact of a millisecond in a march of a quarter of a second: far below the displacements that the tolerance is
+// measured by, but the whole motion after it is what it makes of the velocity. Bound: a few tolerances of the speed.
+TEST(HardStop, ReboundsWithinTheToleranceHoweverLooseItIs) {
+  constexpr double hard = 2e7, end = 0.25;
+  for (const double share : {0.0, 0.03, 0.3}) {  // of critical damping
+    const double c = 2.0 * share * std::sqrt(hard * m), d = c / (2.0 * m), w = std::sqrt(hard / m - d * d);
+    const double contact = (std::numbers::pi - std::atan(2.0 * d * w / (w * w - d * d))) / w;
+    const double rebound = v0 * std::exp(-d * contact) * (std::cos(w * contact) - d / w * std::sin(w * contact));
+    for (const char* method : {"generalized_alpha", "hht", "dormand_prince"})
+      for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+        const Passage passage = run(flying_mass(c, false, hard), method, tolerance, end);
+        EXPECT_NEAR(passage.state.v[0], rebound, 3.0 * tolerance * v0) << method << " " << share << " " << tolerance;
+      }
+  }
+}
 
 class FixedSteps : public ::testing::TestWithParam<std::string> {};
 

@@ -239,8 +239,8 @@ TEST(ReadSpaceMechanism, NamesWhatIsWrongWithJoints) {
   EXPECT_THAT(verdict_of_joint("type = \"distance\"\nat = [2, 0, 0]"), HasSubstr("has no length"));
   EXPECT_THAT(verdict_of_joint("type = \"ball\"\nat = [2, 0, 0]"), HasSubstr("spherical"));
   EXPECT_THAT(
-      verdict_of_joint("type = \"revolute\"\nat = [2, 0, 0]\naxis = [1, 0, 0]\nlock = { at = 1, kind = \"stop\" }"),
-      HasSubstr("locks are for mechanisms in the plane"));
+      verdict_of_joint("type = \"cylindrical\"\nat = [2, 0, 0]\naxis = [1, 0, 0]\nlock = { at = 1, kind = \"stop\" }"),
+      HasSubstr("\"lock\" belongs to a revolute, prismatic or screw joint, and this one is cylindrical"));
 }
 
 TEST(ReadSpaceMechanism, KeepsPlaneAndSpaceApart) {

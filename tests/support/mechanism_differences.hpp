@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <support/joint_pattern.hpp>
+
 #include <cmath>
 #include <random>
 #include <vector>
@@ -87,6 +89,7 @@ inline void expect_consistent_joint(const model::Joint& joint, RandomMotion at, 
   std::vector<double> curvature(k * k), rate(r);
   joint.curvature(at.motion(), multiplier.data(), curvature.data());
   joint.second_rate(at.motion(), rate.data());
+  expect_pattern(joint, at.motion(), g, jacobian, multiplier, curvature);
   std::vector<double> second(r, 0.0);
   for (std::size_t j = 0; j < k; ++j) {
     if (places[j] == ground) continue;

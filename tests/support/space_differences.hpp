@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <support/joint_pattern.hpp>
+
 #include <random>
 #include <vector>
 
@@ -26,7 +28,9 @@ struct SpaceMotion {
     }
     for (std::size_t i = 1; i < padded.size(); ++i) padded[i] = draw(random);
   }
-  model::Motion motion() const { return {0.3, model::Side::right, q.data(), padded.data() + 1, nullptr}; }
+  model::Motion motion() const {
+    return {0.3, model::Side::right, q.data(), padded.data() + 1, phase.data(), rubbing.data(), stuck_at.data()};
+  }
 
   /// Moves a tangent coordinate.
   void move(Index place, double by) {
@@ -54,6 +58,8 @@ struct SpaceMotion {
     }
   }
   std::vector<double> q, padded;
+  std::vector<int> phase{1}, rubbing{1};  // a lock that is engaged, a friction that sticks
+  std::vector<double> stuck_at{0.2};
 };
 
 inline model::SpaceNode free_space_node(int i) {
@@ -136,6 +142,7 @@ inline void expect_consistent_joint(const model::Joint& joint, const SpaceMotion
   joint.constraint(at.motion(), g.data(), jacobian.data());
   joint.curvature(at.motion(), multiplier.data(), curvature.data());
   joint.second_rate(at.motion(), second.data());
+  expect_pattern(joint, at.motion(), g, jacobian, multiplier, curvature);
   std::vector<double> unused(r * k), slopes(k * k, 0.0);
   for_each_slope(
       places, at, r, [&](const model::Motion& motion, double* out) { joint.constraint(motion, out, unused.data()); },

@@ -23,9 +23,10 @@ std::string MechanismStatic::complaint(const system::Mechanism& mechanism) const
                               mechanism.model().is_rotation[static_cast<std::size_t>(worst)] != 0 ? "N m" : "N",
                               mechanism.coordinates()[static_cast<std::size_t>(worst)]);
   return fmt::format(
-      "no equilibrium was found in {} iterations{}; look for a motion that nothing resists, or begin "
+      "no equilibrium was found in {} iterations{}{}; look for a motion that nothing resists, or begin "
       "nearer to it",
-      iterations, left);
+      iterations, left,
+      load > 0.0 ? fmt::format(" where the loads, raised by steps, pass {:.4g} of what is given", load) : "");
 }
 
 MechanismStatic equilibrium_near(const system::State& start, const system::Mechanism& mechanism) {
@@ -38,6 +39,8 @@ MechanismStatic equilibrium_near(const system::State& start, const system::Mecha
   result.iterations = found.iterations;
   result.residual = found.residual;
   result.worst = found.worst;
+  result.load_steps = found.load_steps;
+  result.load = found.load;
   const auto& locks = mechanism.model().locks;
   for (std::size_t i = 0; i < locks.size(); ++i)
     if (locks[i].sign * (locks[i].s.value(result.state.q.data()) - locks[i].at) > 0.0)
@@ -83,9 +86,13 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
     context.sink.open(layout)->append(row);
   report.statistics = {{"iterations", std::to_string(found.iterations)},
+                       {"load_steps", std::to_string(found.load_steps)},
                        {"residual", fmt::format("{:.2e}", found.residual)},
                        {"stable", found.is_stable ? "yes" : "no"}};
   report.message = found.complaint(mechanism);
+  if (found.is_found && found.load_steps > 0)
+    report.findings.push_back(fmt::format(
+        "the loads were raised in {} steps: under all of them at once no equilibrium was found", found.load_steps));
   if (!report.message.empty()) {
     report.status = RunStatus::failed;
   } else if (!found.is_stable) {

@@ -16,6 +16,8 @@ struct MechanismStatic {
   int iterations = 0;
   double residual = 0.0;  ///< largest force left [N], [N m]
   Index worst = -1;       ///< its coordinate
+  int load_steps = 0;     ///< 0: found with all loads at once
+  double load = 1.0;      ///< the share of the loads in whose equilibrium the state is
   int beyond_lock = -1;   ///< a lock that the way to it would have reached
 
   /// Why it is no equilibrium to go on from; empty where it is one.

@@ -76,6 +76,13 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
   report.warnings = plan.warnings;
   report.statistics = {{"freedoms", std::to_string(modes.freedoms)},
                        {"residual_free", fmt::format("{:.1e}", modes.found.residual)}};
+  constexpr double round_off = 1e-12;
+  if (modes.skew > round_off)
+    report.warnings.push_back(fmt::format(
+        "the stiffness is not symmetric, by {:.2g} of its size: loads that follow their body have no potential "
+        "(nor has a configuration that is no equilibrium); these modes leave that part out, and tell nothing of "
+        "flutter, which a transient does",
+        modes.skew));
   write_modes(name, plan.modes.observed, {{0, modes.found}}, context.sink);
   if (modes.freedoms == 0)
     report.message = "the joints leave no motion";

@@ -107,10 +107,40 @@ system::State set_in_motion(const Location& where, const system::Mechanism& mech
   return start.state;
 }
 
+/// Refuses friction that follows a reaction which joints share in a way that nothing determines: what they share is
+/// known to the share of the matrix that lets them repeat each other, and steps that end at an event carry round-off
+/// over that share and the square of their length into it.
+void refuse_unknown_reactions(const Location& where, system::MechanismEquations& equations,
+                              const system::State& state) {
+  const auto& mechanism = equations.mechanism();
+  Vector motion(mechanism.size()), row(mechanism.constraint_count()), rate(row.size());
+  equations.go_to(state, model::Side::right);
+  equations.linearise({}, state.multiplier, motion, row);
+  if (!equations.factorise() || equations.redundant_rows().empty()) return;
+  for (const auto& friction : mechanism.model().frictions)
+    for (Index i = 0; i < friction.pressing_rows; ++i) {
+      // A row that can be moved alone is held by its joint alone.
+      const Index moved = mechanism.first_row(friction.joint) + i;
+      motion.setZero();
+      row.setZero();
+      row[moved] = 1.0;
+      equations.solve(motion, row);
+      equations.constraint_rate(motion, rate);
+      if (rate[moved] > 0.999) continue;
+      throw InvalidInput(
+          where,
+          fmt::format("the friction of \"{}\" follows a reaction that is not determined: what \"{}\" holds is held by "
+                      "other joints too, in shares that nothing tells; give the friction a \"preload\", or let one of "
+                      "the joints hold less (spherical or cylindrical for revolute)",
+                      friction.name, mechanism.rows()[static_cast<std::size_t>(moved)]));
+    }
+}
+
 /// Decides which joints with friction stick at the start.
 void settle_start(const Location& where, const system::Mechanism& mechanism, system::State& state) {
   if (mechanism.model().frictions.empty()) return;
   system::MechanismEquations equations(mechanism);
+  refuse_unknown_reactions(where, equations, state);
   if (!integrate::settle_new_velocities(equations, state))
     throw InvalidInput(where,
                        "no accelerations were found at the start that go with the friction of the joints: with "

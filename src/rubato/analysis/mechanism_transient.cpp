@@ -105,8 +105,18 @@ class MechanismObserver final : public integrate::Observer {
   bool last_recorded_ = false;
 };
 
-/// @param state  the last accepted one
-std::string reason(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state) {
+/// @param guard  of the timeline: the locks, then the frictions
+std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
+  const auto& model = mechanism.model();
+  const auto i = static_cast<std::size_t>(guard);
+  if (i < model.locks.size()) return fmt::format("the lock of \"{}\"", model.locks[i].name);
+  return fmt::format("the friction of \"{}\"", model.frictions[i - model.locks.size()].name);
+}
+
+/// @param state       the last accepted one
+/// @param chattering  the guard that changed without end; -1: none
+std::string reason(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
+                   Index chattering) {
   const std::string at =
       report.step.worst >= 0
           ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
@@ -142,6 +152,13 @@ std::string reason(const integrate::MarchReport& report, const system::Mechanism
           "a larger tolerance";
       break;
     case integrate::StepOutcome::no_way_on:
+      if (chattering >= 0) {
+        what = chattering_part(chattering, mechanism) + " changed a hundred times, and nothing moved";
+        remedy =
+            "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, or take "
+            "\"friction\" in its place), and for a load that jumps as the joint begins to move";
+        break;
+      }
       what = "no velocities and accelerations were found that the joints and locks allow from then on";
       remedy = "look for a drive against a lock, or for locks and drives that contradict each other there";
       break;
@@ -214,7 +231,7 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   report_events(timeline.events(), mechanism, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = reason(report.march, mechanism, state);
+    run.message = reason(report.march, mechanism, state, timeline.chattering());
   } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);

@@ -166,7 +166,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
       {"friction", {"revolute", "prismatic"}},
-      {"lock", {"revolute", "prismatic"}}};
+      {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
     const std::string last = types.size() > 1 ? " or " + types.back() : "";

@@ -221,7 +221,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     }
     force.law = read_law(reader, folder);
     force.follows = reader.optional_bool("following").value_or(false);
-    force.follows_where = reader.where("following");
+    if (reader.has("following")) force.follows_where = reader.where("following");
     force.at = reader.optional_quantities("at").value_or(std::vector<Quantity>{});
     force.at_where = reader.where("at");
     if (!force.at.empty() && !force.follows)

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 namespace rubato::model {
@@ -32,6 +33,49 @@ MotionLaw motion_law(const MechanismAssembly& assembly, const DriveDescription& 
   return table;
 }
 
+Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+             const FreeCoordinate& s, double value) {
+  const LockDescription& given = *joint.lock;
+  const bool is_angle = s.is_angle();
+  Lock lock;
+  lock.name = joint.name;
+  lock.s = s;
+  lock.is_latch = given.is_latch;
+  lock.at = is_angle ? assembly.angle(given.at, part + ": lock: at") : assembly.number(given.at, part + ": lock: at");
+  if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
+  if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
+  if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
+    throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
+                                                "comes by another {}",
+                                                part, lock.at, is_angle ? "angle" : "displacement"));
+  lock.sign = lock.at > value ? 1.0 : -1.0;
+  return lock;
+}
+
+/// The node and axis that a coordinate is.
+std::pair<Index, std::size_t> place_of(const Mechanism& mechanism, Index coordinate) {
+  for (std::size_t node = 0; node < mechanism.nodes.size(); ++node)
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      if (mechanism.nodes[node].place[axis] == coordinate) return {static_cast<Index>(node), axis};
+  return {0, 0};
+}
+
+void take_following_force(MechanismAssembly& assembly, const ForceDescription& force, const std::string& part,
+                          Index node, std::size_t axis, const TimeLaw& law) {
+  Mechanism& mechanism = assembly.mechanism;
+  const Axis at = force.at.empty() ? assembly.position(node) : assembly.point(force.at, force.at_where, part + ": at");
+  if (assembly.in_plane()) {
+    mechanism.add_following_force(part, mechanism.plane_point(node, at[0], at[1]), axis, law);
+    return;
+  }
+  if (!assembly.has_axes(node))
+    throw InvalidInput(force.follows_where,
+                       fmt::format("{} follows a mass that does not turn; give its [[mass]] \"inertia\", or remove "
+                                   "\"following\"",
+                                   part));
+  mechanism.add_following_force(part, mechanism.space_point(node, at), axis, law);
+}
+
 }  // namespace
 
 MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
@@ -57,7 +101,7 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
 }
 
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const PlaneCoordinate& s) {
+                   const FreeCoordinate& s, int pressing_rows) {
   const FrictionDescription& given = *joint.friction;
   if (joint.motion)
     throw InvalidInput(given.where,
@@ -74,8 +118,16 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
   if (given.preload)
     friction.preload = assembly.at_least_zero(*given.preload, part + ": friction: preload");
   else
-    friction.pressing_rows = s.is_angle() ? 2 : 1;
+    friction.pressing_rows = pressing_rows;
   assembly.mechanism.add_friction(std::move(friction));
+}
+
+AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                 const FreeCoordinate& s, double value) {
+  if (!joint.lock) return {};
+  const Lock lock = lock_of(assembly, joint, part, s, value);
+  const int index = assembly.mechanism.add_lock(lock);
+  return lock.is_latch ? AtLock{index, false} : AtLock{};
 }
 
 void take_force(MechanismAssembly& assembly, const ForceDescription& force) {
@@ -83,22 +135,20 @@ void take_force(MechanismAssembly& assembly, const ForceDescription& force) {
   Mechanism& mechanism = assembly.mechanism;
   const Index coordinate = assembly.free_coordinate(force.on, force.where, "a force is on");
   const TimeLaw law = build_time_law(force.law, assembly.parameters, part);
-  if (force.follows && !assembly.in_plane())
-    throw InvalidInput(force.follows_where,
-                       fmt::format("{}: a force that follows in space is not available yet: leave \"following\" out, "
-                                   "or place the mechanism in the plane",
-                                   part));
-  for (std::size_t i = 0; force.follows && i < mechanism.nodes.size(); ++i)
-    for (const std::size_t axis : {0u, 1u}) {
-      if (mechanism.nodes[i].place[axis] != coordinate) continue;
-      const auto node = static_cast<Index>(i);
-      const Axis at =
-          force.at.empty() ? assembly.position(node) : assembly.point(force.at, force.at_where, part + ": at");
-      mechanism.add_following_force(part, mechanism.plane_point(node, at[0], at[1]), axis, law);
-      return;
-    }
-  // A moment of the plane is the same however its node turns.
-  mechanism.forces.push_back({coordinate, law});
+  const bool is_moment = mechanism.is_rotation[static_cast<std::size_t>(coordinate)] != 0;
+  const bool stays = !force.follows && force.follows_where.line > 0;  // said, and not left out
+  const auto [node, axis] = place_of(mechanism, coordinate);
+  if (is_moment && !force.at.empty())
+    throw InvalidInput(force.at_where, part + ": a moment has no point; remove \"at\"");
+  // A moment of the plane is the same however its node turns, and coordinates of rotations turn with their node.
+  if (is_moment && (assembly.in_plane() || !stays))
+    mechanism.forces.push_back({coordinate, law});
+  else if (is_moment)
+    mechanism.add_fixed_moment(part, node, axis - 3, law);
+  else if (force.follows)
+    take_following_force(assembly, force, part, node, axis, law);
+  else
+    mechanism.forces.push_back({coordinate, law});
 }
 
 }  // namespace rubato::model

@@ -28,25 +28,6 @@ std::array<double, 2> axis_of(const MechanismAssembly& assembly, const JointDesc
   return {c * axis[0] + s * axis[1], -s * axis[0] + c * axis[1]};
 }
 
-Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-             const PlaneCoordinate& s, double value) {
-  const LockDescription& given = *joint.lock;
-  const bool is_angle = s.is_angle();
-  Lock lock;
-  lock.name = joint.name;
-  lock.s = s;
-  lock.is_latch = given.is_latch;
-  lock.at = is_angle ? assembly.angle(given.at, part + ": lock: at") : assembly.number(given.at, part + ": lock: at");
-  if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
-  if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
-  if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
-    throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
-                                                "comes by another {}",
-                                                part, lock.at, is_angle ? "angle" : "displacement"));
-  lock.sign = lock.at > value ? 1.0 : -1.0;
-  return lock;
-}
-
 /// The friction, the lock, the drive, the law, the spring and the damper on what a joint leaves free.
 void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                      PlaneCoordinate s) {
@@ -54,14 +35,8 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   const double value = start_value(assembly, joint, part, s.is_angle());
   s.zero = s.value(assembly.start.data()) - value;
   mechanism.joint_coordinates.push_back({joint.name, s});
-  if (joint.friction) take_friction(assembly, joint, part, s);
-  AtLock when;
-  if (joint.lock) {
-    const Lock lock = lock_of(assembly, joint, part, s, value);
-    const int index = mechanism.add_lock(lock);
-    if (lock.is_latch) when = {index, false};
-  }
-  take_laws(assembly, joint, part, s, value, when);
+  if (joint.friction) take_friction(assembly, joint, part, s, s.is_angle() ? 2 : 1);
+  take_laws(assembly, joint, part, s, value, take_lock(assembly, joint, part, s, value));
 }
 
 }  // namespace

@@ -20,21 +20,12 @@ struct SpaceJointPlaces {
   SpaceFrame first, second;
 };
 
-/// Whether the axes of a node can turn, or are held.
-bool has_axes(const MechanismAssembly& assembly, Index node) {
-  const MechanismNode& n = assembly.mechanism.nodes[static_cast<std::size_t>(node)];
-  if (node == 0) return true;
-  for (std::size_t axis = 3; axis < 6; ++axis)
-    if (n.place[axis] == ground && assembly.fixed.count(n.name + "." + axis_names[axis]) == 0) return false;
-  return true;
-}
-
 /// A node that does not turn has no axes with which a joint could do more than hold its place.
 void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
   const bool holds_points_only = joint.type == Type::spherical || joint.type == Type::distance;
   for (std::size_t end = 0; end < 2; ++end) {
     const Index node = built.places.node[end];
-    if (has_axes(assembly, node)) continue;
+    if (assembly.has_axes(node)) continue;
     const bool is_at_node = built.places.at[end] == assembly.position(node);
     if (holds_points_only && is_at_node) continue;
     throw InvalidInput(joint.between_where[end],
@@ -96,7 +87,9 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   const double value = has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
   s.zero = s.value(assembly.start.data()) - value;
   mechanism.space_coordinates.push_back({joint.name, s});
-  if (has_laws) take_laws(assembly, joint, built.part, s, value);
+  // All of the force of a hinge presses on its pin; of a slide what is across its way.
+  if (joint.friction) take_friction(assembly, joint, built.part, s, s.is_angle() ? 3 : 2);
+  if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
 }
 
 double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
@@ -158,14 +151,6 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint) {
   const SpaceJointPlaces built = places_of(assembly, joint);
   const auto& [part, places, first, second] = built;
-  if (joint.lock)
-    throw InvalidInput(joint.lock->where, part +
-                                              ": locks are for mechanisms in the plane; in space give a law that "
-                                              "grows stiff, as moment = \"-1e5*max(angle - 1, 0)\"");
-  if (joint.friction)
-    throw InvalidInput(joint.friction->where, part +
-                                                  ": friction of a joint in space is not available yet: leave it out, "
-                                                  "give the joint \"damping\", or place the mechanism in the plane");
   Mechanism& mechanism = assembly.mechanism;
   const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});

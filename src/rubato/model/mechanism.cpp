@@ -3,6 +3,8 @@
 #include <rubato/model/mechanism.hpp>
 
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 namespace rubato::model {
 
@@ -88,15 +90,26 @@ PlanePoint Mechanism::plane_point(Index node, double x, double y) const {
   return {plane_node(node), {c * dx + s * dy, -s * dx + c * dy}};
 }
 
+SpacePoint Mechanism::space_point(Index node, const numerics::Vector3& at) const {
+  const SpaceNode place = space_node(node);
+  const std::vector<double> all = numbers();
+  return {place, place.rotation(all.data()).conjugate() * (at - place.position(all.data()))};
+}
+
 int Mechanism::add_lock(Lock lock) {
   const int index = static_cast<int>(locks.size());
-  if (lock.stiffness > 0.0) {
-    elements.push_back(make_joint_spring(lock.name, lock.s, lock.stiffness, lock.at, {index, true}));
-  } else {
-    lock.joint = static_cast<int>(joints.size());
-    joints.push_back(make_lock_joint(lock.name, lock.s, lock.at, index));
-  }
-  if (lock.damping > 0.0) elements.push_back(make_joint_damper(lock.name, lock.s, lock.damping, {index, true}));
+  const AtLock when{index, true};
+  std::visit(
+      [&](const auto& s) {
+        if (lock.stiffness > 0.0) {
+          elements.push_back(make_joint_spring(lock.name, s, lock.stiffness, lock.at, when));
+        } else {
+          lock.joint = static_cast<int>(joints.size());
+          joints.push_back(make_lock_joint(lock.name, s, lock.at, index));
+        }
+        if (lock.damping > 0.0) elements.push_back(make_joint_damper(lock.name, s, lock.damping, when));
+      },
+      lock.s.of);
   locks.push_back(std::move(lock));
   return index;
 }
@@ -104,7 +117,12 @@ int Mechanism::add_lock(Lock lock) {
 int Mechanism::add_friction(JointFriction friction) {
   const int index = static_cast<int>(frictions.size());
   friction.sticking_joint = static_cast<int>(joints.size());
-  joints.push_back(std::make_unique<StickingJoint<PlaneCoordinate>>(friction.name, friction.s, index));
+  std::visit(
+      [&](const auto& s) {
+        using Coordinate = std::decay_t<decltype(s)>;
+        joints.push_back(std::make_unique<StickingJoint<Coordinate>>(friction.name, s, index));
+      },
+      friction.s.of);
   frictions.push_back(std::move(friction));
   return index;
 }
@@ -112,6 +130,17 @@ int Mechanism::add_friction(JointFriction friction) {
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
                                     const TimeLaw& law) {
   elements.push_back(make_following_force(name, point, axis, law));
+  following_laws.push_back(law);
+}
+
+void Mechanism::add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis,
+                                    const TimeLaw& law) {
+  elements.push_back(make_following_force(name, point, axis, law));
+  following_laws.push_back(law);
+}
+
+void Mechanism::add_fixed_moment(const std::string& name, Index node, std::size_t axis, const TimeLaw& law) {
+  elements.push_back(make_fixed_moment(name, space_node(node), axis, law));
   following_laws.push_back(law);
 }
 

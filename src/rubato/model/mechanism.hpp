@@ -33,7 +33,7 @@ struct MassEntry {
   double value = 0.0;  ///< [kg], [kg m] or [kg m2]
 };
 
-/// A force along an axis of the world, or a moment about it (in the plane), on a tangent coordinate.
+/// A force along an axis of the world on a tangent coordinate, or a moment about an axis of the node.
 struct NodeForce {
   Index coordinate = 0;
   TimeLaw law;  ///< [N] or [N m]
@@ -95,7 +95,7 @@ struct Mechanism {
   std::vector<PrescribedMotion> drives;
   std::vector<JointFriction> frictions;
   std::vector<NodeForce> forces;
-  std::vector<TimeLaw> following_laws;  ///< of the forces that turn with their node, for when they are not smooth
+  std::vector<TimeLaw> following_laws;  ///< of forces and moments that are elements, for when they are not smooth
   Axis gravity = Axis::Zero();          ///< [m/s2]
   double reference = 0.0;               ///< characteristic size for error measures [m sqrt(kg)]; 0: none
   std::vector<DrawnLine> lines;
@@ -129,14 +129,19 @@ struct Mechanism {
   PlaneNode plane_node(Index node) const;
   /// The point of a node that lies at (x, y) of the world at the start.
   PlanePoint plane_point(Index node, double x, double y) const;
+  /// The point of a node in space that lies at a point of the world at the start.
+  SpacePoint space_point(Index node, const numerics::Vector3& at) const;
   /// A lock with the parts that make it: a spring and a damper, or a constraint. A latch with a stiffness keeps it for
   /// good. What it turns off is made with AtLock{index, false}.
   /// @return its index
   int add_lock(Lock lock);
   /// Adds friction, with the constraint that lets it stick. @return its index
   int add_friction(JointFriction friction);
-  /// A force of the plane along an axis of a node, or a moment, that turns with it: see make_following_force.
+  /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
+  void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);
+  /// A moment about an axis of the world on a node in space: see make_fixed_moment.
+  void add_fixed_moment(const std::string& name, Index node, std::size_t axis, const TimeLaw& law);
   /// Moves a coordinate as a law says. @param name  of the joint
   template <class Coordinate>
   void add_drive(const std::string& name, const Coordinate& s, const MotionLaw& law) {

@@ -89,6 +89,14 @@ Axis MechanismAssembly::position(Index node) const {
   return {numbers[0], numbers[1], in_plane() ? 0.0 : numbers[2]};
 }
 
+bool MechanismAssembly::has_axes(Index node) const {
+  const MechanismNode& n = mechanism.nodes[static_cast<std::size_t>(node)];
+  if (node == 0) return true;
+  for (std::size_t axis = 3; axis < 6; ++axis)
+    if (n.place[axis] == ground && fixed.count(n.name + "." + axis_names[axis]) == 0) return false;
+  return true;
+}
+
 void MechanismAssembly::extend(const Axis& place) {
   low = low.cwiseMin(place);
   high = high.cwiseMax(place);

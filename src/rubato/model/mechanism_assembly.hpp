@@ -41,6 +41,8 @@ struct MechanismAssembly {
                  const std::string& key) const;
 
   Axis position(Index node) const;
+  /// Whether the axes of a node in space can turn, or are held: those of a mass that does not turn are unknown.
+  bool has_axes(Index node) const;
   void extend(const Axis& place);
   bool is_body(const std::string& name) const;
   /// The coordinate of a name. Throws InvalidInput for one that a support holds, or that is none.

@@ -25,9 +25,16 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
 MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                    bool is_angle, double value);
 
-/// The friction of the joint that was added last on the coordinate that it leaves free, in the plane.
+/// The friction of the joint that was added last on the coordinate that it leaves free.
+/// @param pressing_rows  how many rows of the joint, the first ones, are the force that presses
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const PlaneCoordinate& s);
+                   const FreeCoordinate& s, int pressing_rows);
+
+/// The lock of a joint on the coordinate that it leaves free.
+/// @param value  of s in the configuration given
+/// @return the phase in which the laws are at work that a latch ends
+AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                 const FreeCoordinate& s, double value);
 
 /// The drive, the law of a moment or force, the spring and the damper.
 /// @param s      with its zero

@@ -76,6 +76,7 @@ void KktFactor::find_factors(std::span<const Entry> entries) {
 
 void KktFactor::analyse(Index size, Index first_row, std::span<const Entry> entries, bool is_symmetric) {
   size_ = size;
+  first_row_ = first_row;
   is_symmetric_ = is_symmetric;
   order(first_row, entries);
   find_factors(entries);
@@ -123,8 +124,9 @@ bool KktFactor::factorise() {
     for (int b = start[j]; b < end; ++b) {
       const double scaled = lower[b] * inverse, across = upper[b];
       diagonal[row[b]] -= scaled * across;
+      const double across_scaled = across * inverse;
       for (int a = b + 1; a < end; ++a) {
-        lower[*target] -= lower[a] * inverse * across;
+        lower[*target] -= lower[a] * across_scaled;
         upper[*target++] -= scaled * upper[a];
       }
       lower[b] = scaled;
@@ -138,27 +140,30 @@ Index KktFactor::negative_pivots() const {
       std::count_if(value_.begin(), value_.begin() + size_, [](double pivot) { return pivot < 0.0; }));
 }
 
-void KktFactor::solve(double* x) const {
-  const int n = static_cast<int>(size_);
+void KktFactor::solve(double* x, double* rest) const {
+  const int n = static_cast<int>(size_), first_row = static_cast<int>(first_row_);
   const double* const inverse = value_.data();
   const double* const lower = inverse + n;
   const double* const upper = is_symmetric_ ? lower : lower + row_.size();
   double* const y = x_.data();
-  for (int i = 0; i < n; ++i) y[position_[static_cast<std::size_t>(i)]] = x[i];
+  const int* const position = position_.data();
+  const int* const start = start_.data();
+  const int* const row = row_.data();
+  for (int i = 0; i < first_row; ++i) y[position[i]] = x[i];
+  for (int i = first_row; i < n; ++i) y[position[i]] = rest[i - first_row];
   for (int j = 0; j < n; ++j) {
     const double now = y[j];
-    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
-      y[row_[static_cast<std::size_t>(p)]] -= lower[p] * now;
+    for (int p = start[j]; p < start[j + 1]; ++p) y[row[p]] -= lower[p] * now;
   }
-  // Symmetric: U = D L^T; otherwise rows of U carry the pivots.
+  // Symmetric: U = D L^T; otherwise rows of U carry the pivots. The nearest row, known last, comes last.
+  const bool is_symmetric = is_symmetric_;
   for (int j = n - 1; j >= 0; --j) {
-    double now = is_symmetric_ ? y[j] * inverse[j] : y[j];
-    double sum = 0.0;
-    for (int p = start_[static_cast<std::size_t>(j)]; p < start_[static_cast<std::size_t>(j) + 1]; ++p)
-      sum += upper[p] * y[row_[static_cast<std::size_t>(p)]];
-    y[j] = is_symmetric_ ? now - sum : (now - sum) * inverse[j];
+    double now = is_symmetric ? y[j] * inverse[j] : y[j];
+    for (int p = start[j + 1] - 1; p >= start[j]; --p) now -= upper[p] * y[row[p]];
+    y[j] = is_symmetric ? now : now * inverse[j];
   }
-  for (int i = 0; i < n; ++i) x[i] = y[position_[static_cast<std::size_t>(i)]];
+  for (int i = 0; i < first_row; ++i) x[i] = y[position[i]];
+  for (int i = first_row; i < n; ++i) rest[i - first_row] = y[position[i]];
 }
 
 }  // namespace rubato::numerics

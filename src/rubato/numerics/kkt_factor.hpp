@@ -48,7 +48,10 @@ class KktFactor {
   /// How many pivots of the last factors are negative: of a symmetric matrix, its negative eigenvalues (Sylvester).
   Index negative_pivots() const;
   /// x <- A^-1 x
-  void solve(double* x) const;
+  void solve(double* x) const { solve(x, x + first_row_); }
+  /// The same in two parts.
+  /// @param rest  the unknowns from first_row on
+  void solve(double* x, double* rest) const;
 
   /// What an unknown was divided by; after factorise().
   double pivot(Index i) const { return 1.0 / value_[static_cast<std::size_t>(position_[static_cast<std::size_t>(i)])]; }
@@ -59,7 +62,7 @@ class KktFactor {
   void order(Index first_row, std::span<const Entry> entries);
   void find_factors(std::span<const Entry> entries);
 
-  Index size_ = 0;
+  Index size_ = 0, first_row_ = 0;
   bool is_symmetric_ = true;
   std::vector<int> position_;     // of an unknown in the order [size]
   std::vector<int> start_, row_;  // pattern of L below its diagonal, by columns, in the order

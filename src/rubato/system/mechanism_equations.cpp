@@ -42,17 +42,38 @@ MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(
     largest = std::max(largest, joint->places().size());
     widest = std::max(widest, static_cast<std::size_t>(joint->rows()));
     joint_places_.push_back(std::move(place));
+    patterns_.push_back(joint->pattern());
   }
+  // Friction writes on all places of its joint.
+  for (const auto& friction : model.frictions) {
+    model::JointPattern& pattern = patterns_[static_cast<std::size_t>(friction.joint)];
+    std::fill(pattern.jacobian.begin(), pattern.jacobian.end(), 1);
+    std::fill(pattern.curvature.begin(), pattern.curvature.end(), 1);
+  }
+  list_entries();
   forces_ = model.forces;
   jacobian_.assign(entries, 0.0);
   local_.assign(std::max(largest, widest), 0.0);
   matrix_.assign(largest * largest, 0.0);
   velocity_.assign(static_cast<std::size_t>(mechanism.size()) + 1, 0.0);
-  unknowns_.assign(static_cast<std::size_t>(mechanism.size() + mechanism.constraint_count()), 0.0);
   const Vector diagonal = mechanism.mass().diagonal();
   for (const double mass : diagonal) inverse_mass_.push_back(1.0 / mass);
   row_seen_.assign(static_cast<std::size_t>(mechanism.constraint_count()), 0.0);
   analyse();
+}
+
+void MechanismEquations::list_entries() {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlace& place = joint_places_[j];
+    const std::size_t k = joints_[j]->places().size();
+    for (int r = 0; r < joints_[j]->rows(); ++r)
+      for (std::size_t i = 0; i < place.place.size(); ++i) {
+        const std::size_t local = static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i]);
+        if (!patterns_[j].jacobian[local]) continue;
+        entries_.push_back({static_cast<int>(place.jacobian_start + local), static_cast<int>(place.first_row + r),
+                            static_cast<int>(place.place[i]), 0, 0});
+      }
+  }
 }
 
 void MechanismEquations::analyse() {
@@ -72,12 +93,20 @@ void MechanismEquations::analyse() {
     couple(element_places_[e].place);
     is_symmetric = is_symmetric && elements_[e]->has_symmetric_tangent();
   }
+  const auto is_coupled = [&](std::size_t j, int a, int b) {
+    const auto k = static_cast<int>(joints_[j]->places().size());
+    const auto& curvature = patterns_[j].curvature;
+    return curvature[static_cast<std::size_t>(a * k + b)] || curvature[static_cast<std::size_t>(b * k + a)];
+  };
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    couple(joint_places_[j].place);
-    for (int r = 0; r < joints_[j]->rows(); ++r)
-      for (const Index i : joint_places_[j].place) entries.emplace_back(n + joint_places_[j].first_row + r, i);
+    const JointPlace& place = joint_places_[j];
+    for (std::size_t a = 0; a < place.place.size(); ++a)
+      for (std::size_t b = 0; b < place.place.size(); ++b)
+        if (place.place[a] >= place.place[b] && is_coupled(j, place.local[a], place.local[b]))
+          entries.emplace_back(place.place[a], place.place[b]);
     is_symmetric = is_symmetric && joints_[j]->has_symmetric_curvature();
   }
+  for (const Entry& entry : entries_) entries.emplace_back(n + entry.row, entry.place);
   for (const auto& friction : mechanism_.model().frictions) is_symmetric = is_symmetric && !friction.follows_reaction();
   factor_.analyse(size, n, entries, is_symmetric);
 
@@ -86,31 +115,26 @@ void MechanismEquations::analyse() {
       mass_slot_.push_back(factor_.slot(entry.row(), column));
       mass_value_.push_back(entry.value());
     }
-  const auto find_slots = [&](ElementPlace& place, std::size_t k) {
+  const auto find_slots = [&](ElementPlace& place, std::size_t k, const std::vector<char>* pattern) {
     for (std::size_t i = 0; i < place.place.size(); ++i)
       for (std::size_t j = 0; j < place.place.size(); ++j) {
+        const int local = place.local[i] * static_cast<int>(k) + place.local[j];
+        if (pattern && !(*pattern)[static_cast<std::size_t>(local)]) continue;
         const int slot = factor_.slot(place.place[i], place.place[j]);
         if (slot == factor_.spare_slot()) continue;
         place.matrix.slot.push_back(slot);
-        place.matrix.local.push_back(place.local[i] * static_cast<int>(k) + place.local[j]);
+        place.matrix.local.push_back(local);
       }
   };
-  for (std::size_t e = 0; e < elements_.size(); ++e) find_slots(element_places_[e], elements_[e]->places().size());
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    JointPlace& place = joint_places_[j];
-    const auto k = joints_[j]->places().size();
-    find_slots(place, k);
-    for (int r = 0; r < joints_[j]->rows(); ++r)
-      for (std::size_t i = 0; i < place.place.size(); ++i) {
-        const Index row = n + place.first_row + r;
-        const int local = r * static_cast<int>(k) + place.local[i];
-        for (const int slot : {factor_.slot(row, place.place[i]), factor_.slot(place.place[i], row)}) {
-          if (slot == factor_.spare_slot()) continue;
-          place.jacobian.local.push_back(local);
-          place.jacobian.slot.push_back(slot);
-        }
-      }
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    find_slots(element_places_[e], elements_[e]->places().size(), nullptr);
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    find_slots(joint_places_[j], joints_[j]->places().size(), &patterns_[j].curvature);
+  for (Entry& entry : entries_) {
+    entry.slot = factor_.slot(n + entry.row, entry.place);
+    entry.transposed = factor_.slot(entry.place, n + entry.row);
   }
+  for (Index row = n; row < size; ++row) row_slot_.push_back(factor_.slot(row, row));
   for (const auto& friction : mechanism_.model().frictions) {
     FrictionPlace place;
     const JointPlace& joint = joint_places_[static_cast<std::size_t>(friction.joint)];
@@ -251,31 +275,48 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
       force[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
     scatter(place, matrix_.data(), 1.0);
   }
-  constraints(constraint);
-  const Index n = mechanism_.size();
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const JointPlace& place = joint_places_[j];
-    const double* const jacobian = jacobian_.data() + place.jacobian_start;
-    const std::size_t k = joints_[j]->places().size();
+    double* const g = constraint.data() + place.first_row;
+    double* const jacobian = jacobian_.data() + place.jacobian_start;
     if (weights.stiffness != 0.0) {
-      joints_[j]->curvature(motion_, multiplier.data() + place.first_row, matrix_.data());
+      joints_[j]->linearise(motion_, multiplier.data() + place.first_row, g, jacobian, matrix_.data());
       scatter(place, matrix_.data(), weights.stiffness);
+    } else {
+      joints_[j]->constraint(motion_, g, jacobian);
     }
-    for (std::size_t i = 0; i < place.jacobian.slot.size(); ++i)
-      values[place.jacobian.slot[i]] += jacobian[place.jacobian.local[i]];
-    const bool is_active = joints_[j]->is_active(motion_);
-    for (int r = 0; r < joints_[j]->rows(); ++r) {
-      double seen = 0.0;  // G M^-1 G^T of the row, by the diagonal of M
-      for (std::size_t i = 0; i < place.place.size(); ++i) {
-        const double entry = jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
-        seen += entry * entry * inverse_mass_[static_cast<std::size_t>(place.place[i])];
-      }
-      if (!is_active) seen = 0.0;
-      row_seen_[static_cast<std::size_t>(place.first_row + r)] = seen;
-      // An open lock says nothing: multiplier = 0.
-      values[factor_.slot(n + place.first_row + r, n + place.first_row + r)] -=
-          seen > 0.0 ? share * seen / (weights.constraint > 0.0 ? weights.constraint : weights.mass) : 1.0;
-    }
+  }
+  std::fill(row_seen_.begin(), row_seen_.end(), 0.0);
+  for (const Entry& entry : entries_) {
+    const double value = jacobian_[static_cast<std::size_t>(entry.local)];
+    values[entry.slot] += value;
+    values[entry.transposed] += value;
+    row_seen_[static_cast<std::size_t>(entry.row)] +=
+        value * value * inverse_mass_[static_cast<std::size_t>(entry.place)];
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (joints_[j]->is_active(motion_)) continue;
+    const auto first = row_seen_.begin() + joint_places_[j].first_row;
+    std::fill(first, first + joints_[j]->rows(), 0.0);
+  }
+  // An open lock says nothing: multiplier = 0.
+  const double part = share / (weights.constraint > 0.0 ? weights.constraint : weights.mass);
+  for (std::size_t r = 0; r < row_seen_.size(); ++r)
+    values[row_slot_[r]] -= row_seen_[r] > 0.0 ? part * row_seen_[r] : 1.0;
+}
+
+void MechanismEquations::scale_loads(double factor, const Weights& weights, Vector& force) {
+  const double change = factor - 1.0;
+  if (change == 0.0) return;
+  force -= change * mechanism_.weight();
+  for (const auto& load : forces_) force[load.coordinate] -= change * model::value(load.law, motion_.t, motion_.side);
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    if (elements_[e]->role() != model::Element::Role::load) continue;
+    const ElementPlace& place = element_places_[e];
+    elements_[e]->tangent(motion_, weights.stiffness, weights.damping, local_.data(), matrix_.data());
+    for (std::size_t i = 0; i < place.place.size(); ++i)
+      force[place.place[i]] += change * local_[static_cast<std::size_t>(place.local[i])];
+    scatter(place, matrix_.data(), change);
   }
 }
 
@@ -291,17 +332,8 @@ std::vector<Index> MechanismEquations::redundant_rows() const {
 }
 
 void MechanismEquations::add_constraint_force(const Vector& multiplier, double factor, Vector& out) const {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const JointPlace& place = joint_places_[j];
-    const double* const jacobian = jacobian_.data() + place.jacobian_start;
-    const std::size_t k = joints_[j]->places().size();
-    for (int r = 0; r < joints_[j]->rows(); ++r) {
-      const double value = factor * multiplier[place.first_row + r];
-      for (std::size_t i = 0; i < place.place.size(); ++i)
-        out[place.place[i]] +=
-            value * jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
-    }
-  }
+  for (const Entry& entry : entries_)
+    out[entry.place] += factor * multiplier[entry.row] * jacobian_[static_cast<std::size_t>(entry.local)];
   const auto& frictions = mechanism_.model().frictions;
   for (std::size_t i = 0; i < frictions.size(); ++i) {
     const double direction = model::sliding_direction(motion_.rubbing[i]);
@@ -315,16 +347,9 @@ void MechanismEquations::add_constraint_force(const Vector& multiplier, double f
 }
 
 void MechanismEquations::constraint_rate(const Vector& v, Vector& out) {
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const JointPlace& place = joint_places_[j];
-    const double* const jacobian = jacobian_.data() + place.jacobian_start;
-    const std::size_t k = joints_[j]->places().size();
-    joints_[j]->rate(motion_, out.data() + place.first_row);
-    for (int r = 0; r < joints_[j]->rows(); ++r)
-      for (std::size_t i = 0; i < place.place.size(); ++i)
-        out[place.first_row + r] +=
-            v[place.place[i]] * jacobian[static_cast<std::size_t>(r) * k + static_cast<std::size_t>(place.local[i])];
-  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j]->rate(motion_, out.data() + joint_places_[j].first_row);
+  for (const Entry& entry : entries_)
+    out[entry.row] += v[entry.place] * jacobian_[static_cast<std::size_t>(entry.local)];
 }
 
 void MechanismEquations::second_rate(Vector& out) {
@@ -332,14 +357,7 @@ void MechanismEquations::second_rate(Vector& out) {
     joints_[j]->second_rate(motion_, out.data() + joint_places_[j].first_row);
 }
 
-void MechanismEquations::solve(Vector& x, Vector& y) {
-  const auto n = static_cast<std::size_t>(x.size());
-  std::copy(x.data(), x.data() + x.size(), unknowns_.data());
-  std::copy(y.data(), y.data() + y.size(), unknowns_.data() + n);
-  factor_.solve(unknowns_.data());
-  std::copy(unknowns_.data(), unknowns_.data() + n, x.data());
-  std::copy(unknowns_.data() + n, unknowns_.data() + n + static_cast<std::size_t>(y.size()), y.data());
-}
+void MechanismEquations::solve(Vector& x, Vector& y) { factor_.solve(x.data(), y.data()); }
 
 MechanismEquations::Linearised MechanismEquations::linearised(const Vector& multiplier) {
   std::vector<Eigen::Triplet<double>> damping, stiffness, jacobian;

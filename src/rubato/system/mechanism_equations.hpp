@@ -36,6 +36,9 @@ class MechanismEquations {
     bool friction = false;    ///< with the slopes of the friction that reactions make, beside G^T
   };
   void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
+  /// Makes what linearise() wrote that of all loads times a factor: forces, gravity, laws of joints.
+  /// @param weights  those of linearise()
+  void scale_loads(double factor, const Weights& weights, Vector& force);
   /// Evaluates G alone, with g.
   void constraints(Vector& constraint);
   /// out += factor (G^T multiplier + the friction that these multipliers make), with the G evaluated last.
@@ -89,8 +92,12 @@ class MechanismEquations {
   };
   struct JointPlace : ElementPlace {
     Index first_row = 0;
-    Scatter jacobian, transposed;    // entries of G [r x k]
     std::size_t jacobian_start = 0;  // among jacobian_
+  };
+  /// An entry of G that may differ from zero: jacobian_[local].
+  struct Entry {
+    int local, row, place;
+    int slot, transposed;  // of it and of that of G^T, or the spare one
   };
   struct FrictionPlace {
     std::vector<int> slot;  // of the forces on the places of the joint against its pressing rows [places x rows]
@@ -99,6 +106,7 @@ class MechanismEquations {
   void linearise_friction(const Weights& weights, const Vector& multiplier);
   double pressing(const model::JointFriction& friction, const Vector& multiplier) const;
   ElementPlace place_of(const std::vector<Index>& places) const;
+  void list_entries();
   void analyse();
   void scatter(const ElementPlace& place, const double* matrix, double weight);
   void elements_and_loads(Vector& force);
@@ -109,12 +117,14 @@ class MechanismEquations {
   std::vector<model::NodeForce> forces_;
   std::vector<ElementPlace> element_places_;
   std::vector<JointPlace> joint_places_;
+  std::vector<model::JointPattern> patterns_;  // of the joints
+  std::vector<Entry> entries_;                 // of G, joint by joint
   std::vector<FrictionPlace> friction_places_;
-  std::vector<int> mass_slot_;
+  std::vector<int> mass_slot_, row_slot_;
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
-  std::vector<double> local_, matrix_, velocity_, unknowns_;
+  std::vector<double> local_, matrix_, velocity_;
   model::Motion motion_;
   numerics::KktFactor factor_;
   int factorisations_ = 0;

@@ -251,8 +251,10 @@ model::Mechanism slide(bool is_rigid, bool is_latch, double force) {
   m.joints.push_back(model::make_plane_prismatic("slide", ground_point, point, {1.0, 0.0}, 0.0));
   model::Lock lock;
   lock.name = "slide";
-  lock.s.kind = model::PlaneCoordinate::Kind::displacement;
-  lock.s.along = {ground_point, point, {1.0, 0.0}};
+  model::PlaneCoordinate way;
+  way.kind = model::PlaneCoordinate::Kind::displacement;
+  way.along = {ground_point, point, {1.0, 0.0}};
+  lock.s = way;
   lock.is_latch = is_latch;
   lock.at = 1.5;
   lock.stiffness = is_rigid ? 0.0 : 800.0;

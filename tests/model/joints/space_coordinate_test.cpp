@@ -1,3 +1,4 @@
+#include <rubato/model/joints/joint_friction.hpp>
 #include <rubato/model/joints/space_coordinate.hpp>
 #include <rubato/model/mechanism.hpp>
 #include <rubato/system/mechanism.hpp>
@@ -42,6 +43,24 @@ TEST(SpaceCoordinates, MakeForcesWithConsistentTangents) {
       testing::expect_consistent_tangent(*damper, at, 10.0);
       testing::expect_consistent_damping(*damper, at, 10.0);
       testing::expect_consistent_tangent(*drive, at, 10.0);
+    }
+  }
+}
+
+TEST(SpaceCoordinates, AreHeldWithConsistentDerivatives) {
+  for (const auto kind : {SpaceCoordinate::Kind::angle, SpaceCoordinate::Kind::displacement}) {
+    const SpaceCoordinate s = coordinate(kind);
+    const auto lock = model::make_lock_joint("lock", s, 0.4, 0);
+    const model::StickingJoint<SpaceCoordinate> stuck("stuck", s, 0);
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      const SpaceMotion at(2, seed, 0.5);
+      testing::expect_consistent_joint(*lock, at, 10.0);
+      testing::expect_consistent_joint(stuck, at, 10.0);
+      double g = 0.0, slope[12];
+      lock->constraint(at.motion(), &g, slope);
+      EXPECT_DOUBLE_EQ(g, s.value(at.q.data()) - 0.4);
+      stuck.constraint(at.motion(), &g, slope);
+      EXPECT_DOUBLE_EQ(g, s.value(at.q.data()) - 0.2);
     }
   }
 }

@@ -40,7 +40,9 @@ class EmbeddedEstimator : public Estimator {
     change_ = to.v - from.v;
     changed_ = space_->squared(change_);
     differ(from, to, h);
-    const double now = scales_.relative(space_->squared(dq_), space_->squared(dv_), to) * factor(h) / tolerance_;
+    const double now =
+        scales_.relative(space_->squared(dq_), space_->squared(dv_), to, space_->touches(from) || space_->touches(to)) *
+        factor(h) / tolerance_;
     const double power = std::pow(h, exponent());
     density_now_ = std::fmax(now / power, density_ * std::exp(-decay_ * scales_.frequency() * h));
     return std::isfinite(now) ? density_now_ * power : now;

@@ -7,7 +7,11 @@
 namespace rubato::integrate {
 
 ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
-    : space_(space), duration_(duration), derivative_(derivative), is_damped_(space.is_damped()) {}
+    : space_(space),
+      duration_(duration),
+      derivative_(derivative),
+      is_damped_(space.is_damped()),
+      mixing_(space.mixing()) {}
 
 void ErrorScales::start(const system::State& state) {
   y_ = rate_ = 0.0;
@@ -18,10 +22,11 @@ void ErrorScales::start(const system::State& state) {
 void ErrorScales::expect(const system::State& state) {
   const ResponseScales scales = space_.scales(state, state.auxiliary_acceleration, duration_);
   const double omega = scales.frequency_of(derivative_);
-  size_ = std::max({size_, scales.size(), space_.least_size()});
+  size_ = std::max({size_, scales.size(space_.most_from_acceleration()), space_.least_size()});
   third_at_start_ = scales.derivative(3);
   y_ = std::pow(scales.derivative(derivative_), 2);
   rate_ = omega * omega * y_;
+  promised_ = scales.frequency_of(1);
 }
 
 double ErrorScales::frequency() const {
@@ -29,19 +34,26 @@ double ErrorScales::frequency() const {
   return std::max(slowest, y_ > 0.0 ? std::sqrt(rate_ / y_) : 0.0);
 }
 
+double ErrorScales::speed_frequency() const {
+  const double slowest = 1.0 / duration_;
+  return std::max(slowest, speed_ > 0.0 ? std::sqrt(speed_rate_ / speed_) : promised_);
+}
+
 double ErrorScales::memory() const {
   const double forgotten = std::max(0.0, damping_) * duration_;
   return forgotten > 1e-8 ? duration_ * -std::expm1(-forgotten) / forgotten : duration_;
 }
 
-double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to) const {
+double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to, bool is_contact) const {
   double size = size_, omega = frequency();
   if (!(size > 0.0 && y_ > 0.0)) {  // at rest until now: by what it is about to do
     const ResponseScales scales = space_.scales(to, to.auxiliary_acceleration, duration_);
-    if (scales.size() == 0.0) return 0.0;
-    size = std::max(size, scales.size());
+    if (scales.size(space_.most_from_acceleration()) == 0.0) return 0.0;
+    size = std::max(size, scales.size(space_.most_from_acceleration()));
     omega = scales.frequency_of(derivative_);
   }
+  if (mixing_ == ErrorSpace::Mixing::always) omega = std::sqrt(omega * std::min(omega, speed_frequency()));
+  if (is_contact) omega = std::min(omega, speed_frequency());
   return std::sqrt(dq_squared + dv_squared / (omega * omega)) / size;
 }
 
@@ -57,6 +69,12 @@ void ErrorScales::accept(const Vector& shape, double shape_squared, double y, do
   constexpr long stride = 4;
   if (steps_++ % stride != 0) return;
   size_ = std::max(size_, space_.displacement(to));
+  if (mixing_ != ErrorSpace::Mixing::never && !space_.touches(to)) {
+    const Vector& momentum = space_.times_mass(to.v);
+    const double speed_squared = momentum.dot(to.v), power = momentum.dot(to.auxiliary_acceleration);
+    speed_ += h * speed_squared;
+    if (speed_squared > 0.0) speed_rate_ += h * power * power / speed_squared;
+  }
   if (!is_damped_) return;
   const double damping = 0.5 * space_.damping(shape) / shape_squared;
   const double weight = -std::expm1(-static_cast<double>(stride) * frequency() * h);

@@ -11,6 +11,14 @@ namespace rubato::integrate {
 /// stands in for the past, since y alone may begin at zero. T = (1 - exp(-r t_end))/r: the whole march
 /// without damping, the time over which an error is forgotten with it. What costs products with the matrices is looked
 /// at on every fourth step: it changes over periods.
+///
+/// Where motions mix (ErrorSpace::Mixing) an error of velocity lives as long as the speed stays as it is,
+///
+///   Omega^2 = <(d|v|_M/dt)^2>/<|v|_M^2>
+///
+/// over all of the past without contacts: what swings forgets it within a quarter of its period, what turns evenly
+/// never. In a contact, which is passed in one go, Omega stands for omega where it is lower; in mechanisms sqrt(omega
+/// Omega), as if what successive swings add were independent.
 class ErrorScales {
  public:
   /// @param derivative  of q that the y of accept() is: 3 or 1
@@ -19,7 +27,8 @@ class ErrorScales {
   void start(const system::State& state);
 
   /// sqrt(|dq|_M^2 + |dv|_M^2/omega^2)/s; where nothing has moved before `to`, size and frequency are those of `to`.
-  double relative(double dq_squared, double dv_squared, const system::State& to) const;
+  /// @param is_contact  a stop is closed at an end of the step
+  double relative(double dq_squared, double dv_squared, const system::State& to, bool is_contact) const;
 
   /// Takes in an accepted step.
   /// @param shape  whose damping is that of the error [n], |shape|_M^2 beside it
@@ -28,6 +37,7 @@ class ErrorScales {
 
   double size() const { return size_; }
   double frequency() const;
+  double speed_frequency() const;  ///< Omega [rad/s]
   double memory() const;
   double mean_square() const { return y_; }  ///< of y
   /// |q'''|_M to expect after start().
@@ -40,9 +50,12 @@ class ErrorScales {
   double duration_;
   int derivative_;
   bool is_damped_;
+  ErrorSpace::Mixing mixing_;
   double size_ = 0.0, third_at_start_ = 0.0;
-  double y_ = 0.0, rate_ = 0.0;  // averages of |y|^2 and |y'|^2
-  double damping_ = -1.0;        // r [1/s], averaged; negative: unknown
+  double y_ = 0.0, rate_ = 0.0;            // averages of |y|^2 and |y'|^2
+  double damping_ = -1.0;                  // r [1/s], averaged; negative: unknown
+  double speed_ = 0.0, speed_rate_ = 0.0;  // integrals of |v|^2 and (d|v|/dt)^2 over time
+  double promised_ = 0.0;                  // Omega before anything has moved
   long steps_ = 0;
 };
 

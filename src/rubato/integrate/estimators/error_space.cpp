@@ -20,8 +20,12 @@ class StructureSpace final : public ErrorSpace {
   /// and without it a response that grows from nothing would be measured by nothing.
   double least_size() override {
     constexpr double share = 0.1;
-    if (least_size_ < 0.0) least_size_ = share * size_under_loads(system_, duration_);
-    return least_size_;
+    return share * promised();
+  }
+  double most_from_acceleration() override { return promised() > 0.0 ? promised() : HUGE_VAL; }
+  Mixing mixing() const override { return system_.stop_count() > 0 ? Mixing::closed : Mixing::never; }
+  bool touches(const system::State& state) const override {
+    return (state.slider_force.tail(system_.stop_count()).array() > 0.0).any();
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
   double damping(const Vector& x) override {
@@ -30,9 +34,14 @@ class StructureSpace final : public ErrorSpace {
   }
 
  private:
+  double promised() {
+    if (promised_ < 0.0) promised_ = size_under_loads(system_, duration_);
+    return promised_;
+  }
+
   const system::LocallyNonlinear& system_;
   MassNorm norm_;
-  double duration_, least_size_ = -1.0;
+  double duration_, promised_ = -1.0;
   Vector product_;
 };
 

@@ -20,7 +20,18 @@ class ErrorSpace {
   virtual double displacement(const system::State& state) = 0;
   /// Size that errors are measured by even where nothing has moved yet [m sqrt(kg)].
   virtual double least_size() { return 0.0; }
+  /// Size beyond which an acceleration brings nothing, however large it is at the start [m sqrt(kg)].
+  virtual double most_from_acceleration() { return HUGE_VAL; }
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
+  /// Where an error in the velocity of a fast motion may stay in a slow one.
+  enum class Mixing {
+    never,   ///< linear motions
+    always,  ///< as in a crank that turns
+    closed,  ///< while a stop is closed
+  };
+  virtual Mixing mixing() const = 0;
+  /// Whether a stop is closed.
+  virtual bool touches(const system::State& state) const = 0;
   virtual bool is_damped() const = 0;
   /// x^T C x
   virtual double damping(const Vector& x) = 0;

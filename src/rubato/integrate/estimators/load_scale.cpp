@@ -4,23 +4,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace rubato::integrate {
 namespace {
 
-/// Largest value of a law in [0, duration]: at the rows of a table, else at equal distances.
-double largest_of(const model::TimeLaw& law, double duration) {
-  if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&law)) return std::abs(harmonic->amplitude);
+struct Sample {
+  double t, value;
+};
+
+/// A law at equal distances and at the rows of its table, on both sides of a jump.
+std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts) {
+  std::vector<double> times;
+  for (int i = 0; i <= parts; ++i) times.push_back(duration * i / parts);
+  const auto* table = std::get_if<model::TableLaw>(&law);
+  const auto* spline = std::get_if<model::SplineLaw>(&law);
+  if (table || spline)
+    for (const double t : table ? table->times : spline->times)
+      if (t > 0.0 && t < duration) times.push_back(t);
+  std::sort(times.begin(), times.end());
+  std::vector<Sample> samples;
+  for (const double t : times)
+    for (const model::Side side : {model::Side::left, model::Side::right}) {
+      const double value = model::value(law, t, side);
+      samples.push_back({t, std::isfinite(value) ? value : 0.0});
+    }
+  return samples;
+}
+
+double largest_of(const std::vector<Sample>& samples) {
   double largest = 0.0;
-  if (const auto* table = std::get_if<model::TableLaw>(&law)) {
-    for (std::size_t i = 0; i < table->times.size(); ++i)
-      if (table->times[i] >= 0.0 && table->times[i] <= duration)
-        largest = std::max(largest, std::abs(table->values[i]));
-  }
-  constexpr int samples = 64;
-  for (int i = 0; i <= samples; ++i) {
-    const double value = std::abs(model::value(law, duration * i / samples));
-    if (std::isfinite(value)) largest = std::max(largest, value);
+  for (const Sample& sample : samples) largest = std::max(largest, std::abs(sample.value));
+  return largest;
+}
+
+/// The largest |x| of x'' + omega^2 x = omega^2 p from rest, p linear between its samples (Nigam and Jennings 1969):
+/// how far an oscillator of static displacement one comes, which a short load does not bring to it.
+double largest_response(const std::vector<Sample>& p, double omega) {
+  double x = 0.0, v = 0.0, largest = 0.0;
+  for (std::size_t i = 1; i < p.size(); ++i) {
+    const double h = p[i].t - p[i - 1].t;
+    if (!(h > 0.0)) continue;
+    const double slope = (p[i].value - p[i - 1].value) / h, even = x - p[i - 1].value, odd = (v - slope) / omega;
+    const double c = std::cos(omega * h), s = std::sin(omega * h);
+    x = p[i].value + even * c + odd * s;
+    v = slope + omega * (odd * c - even * s);
+    const bool may_turn = omega * h > 0.5;
+    largest = std::max(largest, may_turn ? std::hypot(even, odd) + std::abs(p[i].value) : std::abs(x));
   }
   return largest;
 }
@@ -36,19 +66,25 @@ double size_under_loads(const system::LocallyNonlinear& system, double duration)
   if (!factor.factorise(held)) return 0.0;  // a stiffness that is not one: nothing is promised
   MassNorm norm(system);
   double squared = 0.0;
+  // Enough for one load, and not too many for thousands.
+  const int parts = static_cast<int>(std::max<std::size_t>(64, 4096 / loads.terms().size()));
   Vector force(system.size()), q(system.size());
   for (const auto& term : loads.terms()) {
-    const double largest = largest_of(term.law, duration);
+    const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law);
+    std::vector<Sample> samples;
+    if (!harmonic) samples = samples_of(term.law, duration, parts);
+    const double largest = harmonic ? std::abs(harmonic->amplitude) : largest_of(samples);
     if (!(largest > 0.0)) continue;
     force.setZero();
     for (std::size_t i = 0; i < term.rows.size(); ++i) force[term.rows[i]] += largest * term.weights[i];
     factor.solve(force, q);
     double size = norm(q);
     if (!(size > 0.0 && std::isfinite(size))) continue;
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law)) {
-      const double omega_squared = force.dot(q) / (size * size);
+    const double omega_squared = force.dot(q) / (size * size);
+    if (harmonic)
       size /= std::max(1.0, std::pow(harmonic->angular_frequency, 2) / omega_squared);
-    }
+    else
+      size *= std::min(1.0, largest_response(samples, std::sqrt(omega_squared)) / largest);
     squared += size * size;
   }
   return std::sqrt(squared);

@@ -8,10 +8,11 @@ namespace rubato::integrate {
 /// with its largest value at the displacement that it would hold on the structure with its sliders stuck, which inertia
 /// alone limits to what happens within the duration T:
 ///
-///   q_j = (K + kT of the sliders + 2/T^2 M)^-1 w_j,   size^2 = sum of (max |law_j| |q_j|_M / max(1,
-///   (Omega/omega_j)^2))^2
+///   q_j = (K + kT of the sliders + 2/T^2 M)^-1 w_j,   size^2 = sum of (max |law_j| |q_j|_M r_j)^2
 ///
-/// with omega_j the frequency of the shape q_j, and Omega that of a harmonic law: a load above resonance meets inertia.
+/// A load that is faster than the shape q_j, of frequency omega_j, meets inertia: r_j = min(1, (omega_j/Omega)^2) for a
+/// harmonic law, else the largest response from rest of an oscillator of that frequency, where it is below the static
+/// one.
 /// @param duration  of the march from t = 0 [s]
 double size_under_loads(const system::LocallyNonlinear& system, double duration);
 

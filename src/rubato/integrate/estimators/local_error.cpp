@@ -36,9 +36,12 @@ class LocalErrorEstimator final : public Estimator {
     now_.squared = now_.jump.dot(now_.product);
     now_.third = now_.squared / (h * h);
     now_.fourth = -1.0;
+    is_contact_ = space_->touches(from) || space_->touches(to);
     const double once = of_the_step(to, h), often = scales_.memory() / h;
     if (c_.order == 1) return once * often;
-    return std::fmin(once * often, std::fmax(once, of_what_lasts(to, h) * often));
+    // What a contact leaves is not a vibration that will be out of phase: its few steps share a part of the tolerance.
+    const double event = is_contact_ ? once * steps_of_a_contact : once;
+    return std::fmin(once * often, std::fmax(event, of_what_lasts(to, h) * often));
   }
 
   void accept(const system::State& to) override {
@@ -85,7 +88,7 @@ class LocalErrorEstimator final : public Estimator {
       dv_squared = dv * dv * dq_squared;
     }
     const double dq = c_.displacement * h * h;
-    return scales_.relative(dq * dq * dq_squared, dv_squared, to) / tolerance_;
+    return scales_.relative(dq * dq * dq_squared, dv_squared, to, is_contact_) / tolerance_;
   }
 
   /// Of the slow part of q''', which is what the scales are told of.
@@ -101,7 +104,7 @@ class LocalErrorEstimator final : public Estimator {
       fourth = third * std::pow(scales_.frequency(), 2);
     }
     const double dq = c_.displacement * h3, dv = c_.velocity_next * h3;
-    return scales_.relative(dq * dq * third, dv * dv * fourth, to) / tolerance_;
+    return scales_.relative(dq * dq * third, dv * dv * fourth, to, false) / tolerance_;
   }
 
   struct Difference {
@@ -110,7 +113,10 @@ class LocalErrorEstimator final : public Estimator {
     double step = 0.0, squared = 0.0, third = 0.0, fourth = -1.0;
   };
 
+  static constexpr double steps_of_a_contact = 16.0;
+
   double tolerance_;
+  bool is_contact_ = false;
   ErrorConstants c_;
   std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;

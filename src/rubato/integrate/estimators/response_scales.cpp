@@ -13,8 +13,8 @@ double raised(const ResponseScales::Shape& shape, int order) {
 
 }  // namespace
 
-double ResponseScales::size() const {
-  return std::max({displacement.length, raised(velocity, -1), raised(acceleration, -2)});
+double ResponseScales::size(double most) const {
+  return std::max({displacement.length, raised(velocity, -1), std::min(most, raised(acceleration, -2))});
 }
 
 double ResponseScales::derivative(int k) const {
@@ -32,7 +32,12 @@ ResponseScales response_scales(const system::LocallyNonlinear& system, const sys
   const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
     const double length = norm(x);
     if (!(length > 0.0)) return {};
-    const double quotient = x.dot(stiffness * x) / (length * length);
+    double work = x.dot(stiffness * x);
+    for (Index i = system.slider_count(); i < system.contact_count(); ++i)
+      if (state.slider_force[i] > 0.0)
+        work += system.stops()[static_cast<std::size_t>(i - system.slider_count())].stiffness *
+                std::pow(system.relative_displacement(i, x), 2);
+    const double quotient = work / (length * length);
     return {length, std::max(1.0 / duration, std::sqrt(std::max(0.0, quotient)))};
   };
   return {shape_of(state.q), shape_of(state.v), shape_of(acceleration)};

@@ -5,9 +5,9 @@
 namespace rubato::integrate {
 
 /// How large a response is about to be, and how fast, from one state. A shape of frequency omega (omega^2 = x^T K x /
-/// x^T M x, K with all sliders stuck) promises the displacement |a|/omega^2, |v|/omega or |q| in the mass norm; each
-/// counts with its own frequency, so that an acceleration of round-off makes no fast motion of a large displacement. A
-/// shape that nothing holds moves freely: its omega is that of a motion over the whole duration.
+/// x^T M x, K with all sliders stuck and the stops that touch) promises the displacement |a|/omega^2, |v|/omega or |q|
+/// in the mass norm; each counts with its own frequency, so that an acceleration of round-off makes no fast motion of a
+/// large displacement. A shape that nothing holds moves freely: its omega is that of a motion over the whole duration.
 struct ResponseScales {
   struct Shape {
     double length = 0.0;     ///< in the mass norm; 0: at rest, or without load
@@ -15,7 +15,8 @@ struct ResponseScales {
   };
   Shape displacement, velocity, acceleration;
 
-  double size() const;               ///< of the displacement to expect [m sqrt(kg)]
+  /// Of the displacement to expect [m sqrt(kg)], of which the acceleration makes no more than `most`.
+  double size(double most) const;
   double derivative(int k) const;    ///< |d^k q/dt^k|_M to expect, k = 1, 2 or 3
   double frequency_of(int k) const;  ///< of what makes most of that derivative
 };

@@ -40,7 +40,8 @@ class Search {
         mechanism_.reference() > 0.0 ? mechanism_.reference() : extent_ * std::sqrt(mechanism_.mass().diagonal().sum());
   }
 
-  MechanismEquilibrium run() {
+  /// Downhill from a configuration that may be far away.
+  MechanismEquilibrium downhill() {
     scale_ = stiffness_per_mass();
     double shift = first_shift * scale_, last = HUGE_VAL;
     for (found_.iterations = 0; found_.iterations < plan_.most_iterations; ++found_.iterations) {
@@ -76,6 +77,38 @@ class Search {
       const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
       shift = std::max(least_shift * scale_, shift * (share == 1.0 ? std::min(fall, 0.5) : 1.0));
       last = norm;
+    }
+    return found_;
+  }
+
+  /// Newton's method alone, under a share of the loads: quick near an equilibrium, stable or not.
+  /// @param load  [-]
+  MechanismEquilibrium near(double load) {
+    constexpr int enough = 30;  // it converges in ten, or not at all
+    scale_ = stiffness_per_mass();
+    system::State& state = found_.state;
+    for (found_.iterations = 0; found_.iterations < enough; ++found_.iterations) {
+      const system::MechanismEquations::Weights weights{0.0, 0.0, 1.0, scale_};
+      equations_.go_to(state, model::Side::right);
+      equations_.linearise(weights, state.multiplier, force_, constraint_);
+      equations_.scale_loads(load, weights, force_);
+      equations_.add_constraint_force(state.multiplier, 1.0, force_);
+      found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
+      if (!std::isfinite(found_.residual) || !equations_.factorise()) return found_;
+      force_ = -force_;
+      constraint_ = -constraint_;
+      equations_.solve(force_, constraint_);
+      const double share = longest_share();
+      mechanism_.times_mass(force_, product_);
+      const double size = std::sqrt(std::max(force_.dot(product_), 0.0));
+      if (!std::isfinite(size)) return found_;
+      mechanism_.retract(state.q, share * force_, next_);
+      std::swap(state.q, next_);
+      state.multiplier += share * constraint_;
+      if (share < 1.0 || !(size <= plan_.tolerance * reference_)) continue;
+      found_.is_found = true;
+      found_.is_stable = equations_.is_positive();
+      return found_;
     }
     return found_;
   }
@@ -127,11 +160,49 @@ class Search {
   double extent_ = 1.0, reference_ = 1.0, scale_ = 1.0;
 };
 
+/// Raises the loads from zero. Where it fails the state is the last equilibrium that was found, at a share of the
+/// loads.
+MechanismEquilibrium by_load_steps(system::MechanismEquations& equations, const system::State& given,
+                                   const EquilibriumPlan& plan) {
+  MechanismEquilibrium last, tried;
+  last.state = given;
+  last.load = 0.0;
+  double step = plan.first_load_step;
+  int iterations = 0, steps = 0;
+  while (last.load < 1.0 && step >= plan.least_load_step) {
+    const double load = last.load + step >= 1.0 - 1e-9 ? 1.0 : last.load + step;
+    tried = Search(equations, last.state, plan).near(load);
+    iterations += tried.iterations;
+    if (tried.is_found) {
+      last = std::move(tried);
+      last.load = load;
+      ++steps;
+      step *= 2.0;
+    } else {
+      step *= 0.5;
+    }
+  }
+  last.iterations = iterations;
+  last.load_steps = steps;
+  if (last.load == 1.0) return last;
+  last.is_found = false;
+  last.residual = tried.residual;
+  last.worst = tried.worst;
+  return last;
+}
+
 }  // namespace
 
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan) {
-  return Search(equations, given, plan).run();
+  MechanismEquilibrium at_once = Search(equations, given, plan).downhill();
+  if (at_once.is_found) return at_once;
+  MechanismEquilibrium raised = by_load_steps(equations, given, plan);
+  raised.iterations += at_once.iterations;
+  if (raised.load > 0.0) return raised;
+  at_once.iterations = raised.iterations;
+  at_once.load = 0.0;
+  return at_once;
 }
 
 }  // namespace rubato::integrate

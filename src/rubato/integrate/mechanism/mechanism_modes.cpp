@@ -21,9 +21,10 @@ Matrix motions_left(const SparseMatrix& jacobian) {
   return all.rightCols(n - decomposition.rank());
 }
 
-SparseMatrix reduced(const SparseMatrix& matrix, const Matrix& basis) {
-  const Matrix product = basis.transpose() * (matrix * basis);
-  return SparseMatrix((0.5 * (product + product.transpose())).sparseView(0.0, 0.0));
+Matrix reduced(const SparseMatrix& matrix, const Matrix& basis) { return basis.transpose() * (matrix * basis); }
+
+SparseMatrix symmetric(const Matrix& matrix) {
+  return SparseMatrix((0.5 * (matrix + matrix.transpose())).sparseView(0.0, 0.0));
 }
 
 }  // namespace
@@ -36,14 +37,16 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
   MechanismModes result;
   result.freedoms = basis.cols();
   if (result.freedoms == 0) return result;
-  const SparseMatrix mass = reduced(mechanism.mass(), basis), stiffness = reduced(linear.stiffness, basis);
+  const Matrix tangent = reduced(linear.stiffness, basis);
+  result.skew = 0.5 * (tangent - tangent.transpose()).norm() / std::max(tangent.norm(), 1e-300);
+  const SparseMatrix mass = symmetric(reduced(mechanism.mass(), basis)), stiffness = symmetric(tangent);
   // Generalised, so that the signs are those of omega^2; round-off of K makes no motion unstable.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> signs(Matrix(stiffness), Matrix(mass), Eigen::EigenvaluesOnly);
   const Vector squares = signs.eigenvalues();
   result.is_stable = squares[0] >= -1e-10 * squares.cwiseAbs().maxCoeff();
   if (!result.is_stable) return result;
-  result.found =
-      numerics::lowest_damped_modes(stiffness, reduced(linear.damping, basis), mass, std::min(count, result.freedoms));
+  result.found = numerics::lowest_damped_modes(stiffness, symmetric(reduced(linear.damping, basis)), mass,
+                                               std::min(count, result.freedoms));
   for (auto& mode : result.found.modes) mode.shape = (basis * mode.shape).eval();
   return result;
 }

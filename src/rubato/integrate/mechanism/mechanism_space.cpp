@@ -27,6 +27,9 @@ class MechanismSpace final : public ErrorSpace {
     return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
   }
 
+  Mixing mixing() const override { return Mixing::always; }
+  bool touches(const system::State&) const override { return false; }
+
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
     const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
       const double length = norm(x);

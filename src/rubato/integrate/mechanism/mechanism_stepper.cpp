@@ -92,13 +92,27 @@ class MechanismStepper final : public Stepper {
  private:
   /// q, v and both accelerations of `to` for the travel dq.
   void place(const system::State& from, double h, system::State& to) {
-    const double inverse = 1.0 / (p_.beta * h * h);
-    to.auxiliary_acceleration =
-        inverse * (travel_ - h * from.v - (h * h * (0.5 - p_.beta)) * from.auxiliary_acceleration);
-    to.v = from.v + h * ((1.0 - p_.gamma) * from.auxiliary_acceleration + p_.gamma * to.auxiliary_acceleration);
-    to.acceleration =
-        (1.0 / (1.0 - p_.alpha_f)) * ((1.0 - p_.alpha_m) * to.auxiliary_acceleration +
-                                      p_.alpha_m * from.auxiliary_acceleration - p_.alpha_f * from.acceleration);
+    const Index n = travel_.size();
+    to.auxiliary_acceleration.resize(n);
+    to.v.resize(n);
+    to.acceleration.resize(n);
+    const double inverse = 1.0 / (p_.beta * h * h), to_acceleration = 1.0 / (1.0 - p_.alpha_f);
+    const double before = h * (1.0 - p_.gamma), after = h * p_.gamma, start = h * h * (0.5 - p_.beta);
+    const double new_share = to_acceleration * (1.0 - p_.alpha_m), old_share = to_acceleration * p_.alpha_m;
+    const double last_share = to_acceleration * p_.alpha_f;
+    const double* __restrict const travel = travel_.data();
+    const double* __restrict const v = from.v.data();
+    const double* __restrict const shifted = from.auxiliary_acceleration.data();
+    const double* __restrict const last = from.acceleration.data();
+    double* __restrict const new_v = to.v.data();
+    double* __restrict const new_shifted = to.auxiliary_acceleration.data();
+    double* __restrict const now = to.acceleration.data();
+    for (Index i = 0; i < n; ++i) {  // one pass: long chains do not fit the first-level cache
+      const double next = inverse * (travel[i] - h * v[i] - start * shifted[i]);
+      new_shifted[i] = next;
+      new_v[i] = v[i] + (before * shifted[i] + after * next);
+      now[i] = new_share * next + old_share * shifted[i] - last_share * last[i];
+    }
     mechanism_.retract(from.q, travel_, to.q);
   }
 

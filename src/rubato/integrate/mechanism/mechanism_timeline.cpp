@@ -31,7 +31,9 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
       loads_(loads_of(mechanism.model())),
       left_(mechanism.size()),
       right_(mechanism.size()),
-      padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0) {
+      padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0),
+      padded_acceleration_(padded_) {
+  transitions_.resize(mechanism.model().locks.size() + mechanism.model().frictions.size());
   for (const auto& lock : mechanism.model().locks)
     row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);
 }
@@ -92,6 +94,20 @@ void MechanismTimeline::note_friction(const std::vector<int>& old, const system:
   }
 }
 
+void MechanismTimeline::count_transition(std::size_t guard, const system::State& state) {
+  constexpr int most = 100;
+  constexpr double window = 1e9;  // over the resolution, 1e-12 of the run
+  constexpr double still = 1e-9;  // ten times what Newton's method leaves of positions
+  const auto& model = mechanism_.model();
+  const model::FreeCoordinate& s = guard < row_.size() ? model.locks[guard].s : model.frictions[guard - row_.size()].s;
+  const double value = s.value(state.q.data());
+  const double size = s.is_angle() ? 1.0 : 1.0 + state.q.cwiseAbs().maxCoeff();
+  Transitions& past = transitions_[guard];
+  if (!(std::abs(value - past.at) <= still * size && state.t - past.since <= window * resolution_))
+    past = {state.t, value, 0};
+  if (++past.count > most) chattering_ = static_cast<Index>(guard);
+}
+
 MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
   Rubbing result;
   result.candidates.assign(state.rubbing.size(), 0);
@@ -100,6 +116,7 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     result.has_changed = true;
+    count_transition(row_.size() + i, state);
     if (old[i] != model::friction_sticks) {
       result.candidates[i] = 1;
     } else {
@@ -116,6 +133,19 @@ double MechanismTimeline::balanced_friction(std::size_t i, const system::State& 
   return equations_.friction_force(i, balanced_.multiplier);
 }
 
+model::Motion MechanismTimeline::motion_of(const system::State& state) {
+  std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
+  std::copy(state.acceleration.data(), state.acceleration.data() + state.acceleration.size(),
+            padded_acceleration_.data() + 1);
+  return {state.t,
+          model::Side::left,
+          state.q.data(),
+          padded_.data() + 1,
+          state.phase.data(),
+          state.rubbing.data(),
+          state.stuck_at.data()};
+}
+
 GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state) {
   if (state.rubbing[i] == model::friction_sticks) {
     const double held = std::abs(balanced_friction(i, state));
@@ -123,19 +153,8 @@ GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State&
   }
   const auto& s = mechanism_.model().frictions[i].s;
   const double direction = model::sliding_direction(state.rubbing[i]);
-  equations_.go_to(state, model::Side::left);
-  const auto places = s.places();
-  std::vector<double> slope(places.size()), curvature(places.size() * places.size());
-  s.slope(state.q.data(), slope.data());
-  s.curvature(state.q.data(), 1.0, curvature.data());
-  const auto of = [](const Vector& x, Index place) { return place == ground ? 0.0 : x[place]; };
-  double second_rate = 0.0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    second_rate += slope[k] * of(state.acceleration, places[k]);
-    for (std::size_t l = 0; l < places.size(); ++l)
-      second_rate += of(state.v, places[k]) * curvature[k * places.size() + l] * of(state.v, places[l]);
-  }
-  return {direction * equations_.friction_rate(i), direction * second_rate};
+  const model::Motion motion = motion_of(state);
+  return {direction * s.rate(motion), direction * s.second_rate(motion, padded_acceleration_.data() + 1)};
 }
 
 bool MechanismTimeline::release(system::State& state) {
@@ -161,17 +180,11 @@ bool MechanismTimeline::has_rate(std::size_t i, const system::State& from) const
 GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state) {
   if (i >= row_.size()) return friction_guard(i - row_.size(), state);
   const model::Lock& lock = mechanism_.model().locks[i];
-  std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
-  const model::Motion motion{state.t, model::Side::left, state.q.data(), padded_.data() + 1, state.phase.data()};
+  const model::Motion motion = motion_of(state);
   const double s = lock.s.value(state.q.data()), rate = lock.s.rate(motion);
   if (state.phase[i] == model::lock_open) return {lock.sign * (lock.at - s), -lock.sign * rate};
   if (row_[i] >= 0) return {lock.sign * state.multiplier[row_[i]], 0.0};
-  double second_rate = 0.0;  // of an angle; close enough for a displacement, whose slope turns slowly
-  double slope[6];
-  lock.s.slope(state.q.data(), slope);
-  const auto places = lock.s.places();
-  for (std::size_t k = 0; k < places.size(); ++k)
-    if (places[k] != ground) second_rate += slope[k] * state.acceleration[places[k]];
+  const double second_rate = lock.s.second_rate(motion, padded_acceleration_.data() + 1);
   return {lock.sign * (lock.stiffness * (s - lock.at) + lock.damping * rate),
           lock.sign * (lock.stiffness * rate + lock.damping * second_rate)};
 }
@@ -223,6 +236,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     if (!is_watched(i, before)) continue;
     GuardValue now = guard(static_cast<Index>(i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
+    count_transition(i, state);
     const bool engages = state.phase[i] == model::lock_open;
     state.phase[i] = engages ? model::lock_engaged : model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), engages, 0.0});
@@ -235,7 +249,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
   const bool is_settled =
       has_impact ? settle_new_velocities(equations_, state) : settle_friction(equations_, state, rubbing.candidates);
   note_friction(old, state);
-  if (!is_settled || !release(state)) return Passage::fails;
+  if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;
   shift_acceleration(equations_, state, shift);
   return jumps ? Passage::restarts : Passage::continues;
 }

@@ -45,6 +45,9 @@ class MechanismTimeline final : public Timeline {
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
   const std::vector<LockEvent>& events() const { return events_; }
+  /// The guard whose transitions had no end, for which pass() failed: a hundred within a thousandth of the run,
+  /// between which its coordinate stayed where it was, to 1e-9 of a radian or of the model's size. -1: none.
+  Index chattering() const { return chattering_; }
   /// What drives gave so far as their velocities jumped, or locks did against them [J].
   double impulsive_work() const { return impulsive_work_; }
 
@@ -53,11 +56,15 @@ class MechanismTimeline final : public Timeline {
     bool has_changed = false;
     std::vector<char> candidates;
   };
+  /// Where the mechanism is, for its joints, with padded_ and padded_acceleration_ set to the state.
+  model::Motion motion_of(const system::State& state);
   /// The friction of a joint with the multipliers of equilibrium, which stay in balanced_.
   double balanced_friction(std::size_t friction, const system::State& state);
   GuardValue friction_guard(std::size_t friction, const system::State& state);
   /// Which frictions a step ended in: those that slide no more, and those that let go.
   Rubbing rubbing_after(const system::State& before, system::State& state);
+  /// Counts a transition of a guard.
+  void count_transition(std::size_t guard, const system::State& state);
   /// Notes what friction did since `old`.
   void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
@@ -75,10 +82,17 @@ class MechanismTimeline final : public Timeline {
   double resolution_;
   system::Loads loads_;
   Vector left_, right_;
-  std::vector<Index> row_;  // of the constraint of each lock, or -1
-  std::vector<double> padded_;
+  std::vector<Index> row_;                            // of the constraint of each lock, or -1
+  std::vector<double> padded_, padded_acceleration_;  // after a zero
   system::State balanced_;
   std::vector<LockEvent> events_;
+  /// Transitions of a guard since a time and a place.
+  struct Transitions {
+    double since = 0.0, at = 0.0;
+    int count = 0;
+  };
+  std::vector<Transitions> transitions_;
+  Index chattering_ = -1;
   double impulsive_work_ = 0.0;
 };
 

@@ -8,6 +8,13 @@
 
 namespace rubato::model {
 
+/// Which entries of G and of its derivatives may differ from zero, in whatever configuration: the others are never
+/// read.
+struct JointPattern {
+  std::vector<char> jacobian;   ///< [r x k] by rows
+  std::vector<char> curvature;  ///< [k x k], as symmetric as curvature() is
+};
+
 /// A constraint between nodes, g(q, t) = 0 [r], with G = dg/dq. It knows no time step. Lengths are in metres, angles in
 /// radians. The multiplier of a row is the force (or moment) that the joint makes against a growing g: the equations
 /// carry G^T multiplier on their left side.
@@ -34,6 +41,17 @@ class Joint {
     for (int i = 0; i < rows(); ++i) out[i] = 0.0;
   }
   virtual bool has_symmetric_curvature() const { return true; }
+  /// constraint() and curvature() in one: what both need is found once.
+  virtual void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
+                         double* curvature) const {
+    constraint(motion, g, jacobian);
+    this->curvature(motion, multiplier, curvature);
+  }
+  /// All entries, unless a joint knows better.
+  virtual JointPattern pattern() const {
+    const std::size_t k = places_.size();
+    return {std::vector<char>(row_names_.size() * k, 1), std::vector<char>(k * k, 1)};
+  }
   /// False: the row says nothing in this phase (a lock that is open).
   virtual bool is_active(const Motion&) const { return true; }
 

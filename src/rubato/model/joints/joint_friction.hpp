@@ -1,7 +1,7 @@
 #pragma once
 
+#include <rubato/model/joints/free_coordinate.hpp>
 #include <rubato/model/joints/joint.hpp>
-#include <rubato/model/joints/plane_coordinate.hpp>
 
 #include <string>
 #include <utility>
@@ -26,7 +26,7 @@ enum FrictionPhase : int {
 /// The multipliers are those of the same instant.
 struct JointFriction {
   std::string name;  ///< of the joint
-  PlaneCoordinate s;
+  FreeCoordinate s;
   double coefficient = 0.0;  ///< mu [-]; of an angle mu times the radius [m]
   double preload = 0.0;      ///< [N]
   int joint = -1;            ///< whose parts rub, among the mechanism's joints

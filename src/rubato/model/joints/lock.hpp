@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/model/joints/plane_coordinate.hpp>
+#include <rubato/model/joints/free_coordinate.hpp>
 
 #include <string>
 
@@ -21,7 +21,7 @@ enum LockPhase : int {
 /// A stop lets go where its force would pull; a latch never does, and ends the joint's drive.
 struct Lock {
   std::string name;  ///< of the joint
-  PlaneCoordinate s;
+  FreeCoordinate s;
   bool is_latch = false;
   double at = 0.0;         ///< [rad] or [m]
   double stiffness = 0.0;  ///< [N m/rad] or [N/m]; 0: a constraint

@@ -43,6 +43,23 @@ double PlaneCoordinate::rate(const Motion& motion) const {
   return sum;
 }
 
+double PlaneCoordinate::second_rate(const Motion& motion, const double* acceleration) const {
+  const PlaneNode& first = along.first.node;
+  const PlaneNode& second = along.second.node;
+  if (kind == Kind::angle) return acceleration[second.place[2]] - acceleration[first.place[2]];
+  double slopes[k], bends[k * k], v[k], sum = 0.0;
+  slope(motion.q, slopes);
+  curvature(motion.q, 1.0, bends);
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i] = motion.v[first.place[i]];
+    v[i + 3] = motion.v[second.place[i]];
+    sum += slopes[i] * acceleration[first.place[i]] + slopes[i + 3] * acceleration[second.place[i]];
+  }
+  for (int i = 0; i < k; ++i)
+    for (int j = 0; j < k; ++j) sum += v[i] * bends[i * k + j] * v[j];
+  return sum;
+}
+
 std::unique_ptr<Element> make_joint_spring(std::string name, const PlaneCoordinate& s, double stiffness, double rest,
                                            const AtLock& when) {
   return std::make_unique<Spring<PlaneCoordinate>>(std::move(name), s, stiffness, rest, when);

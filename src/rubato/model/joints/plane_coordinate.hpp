@@ -28,6 +28,9 @@ struct PlaneCoordinate {
   void slope(const double* q, double* slope) const;                         ///< [6]
   void curvature(const double* q, double weight, double* curvature) const;  ///< [6 x 6]
   double rate(const Motion& motion) const;                                  ///< [rad/s] or [m/s]
+  /// s'' for given accelerations.
+  /// @param acceleration  [n], after a zero, as the velocities of a Motion
+  double second_rate(const Motion& motion, const double* acceleration) const;
 };
 
 /// Where a part stands in the phases of a lock.

@@ -41,23 +41,40 @@ class Revolute : public PlaneJoint {
   std::unique_ptr<Joint> clone() const override { return std::make_unique<Revolute>(*this); }
 
   void constraint(const Motion& motion, double* g, double* jacobian) const override {
-    const auto a = first_.at(motion.q), b = second_.at(motion.q);
-    g[0] = b.x - a.x;
-    g[1] = b.y - a.y;
-    const double rows[2][k] = {{-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y}, {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x}};
-    std::copy(rows[0], rows[0] + 2 * k, jacobian);
+    write(first_.at(motion.q), second_.at(motion.q), g, jacobian);
   }
   void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
+    bend(first_.at(motion.q), second_.at(motion.q), multiplier, curvature);
+  }
+  void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
+                 double* curvature) const override {
     const auto a = first_.at(motion.q), b = second_.at(motion.q);
-    std::fill(curvature, curvature + k * k, 0.0);
-    curvature[2 * k + 2] = a.arm_x * multiplier[0] + a.arm_y * multiplier[1];
-    curvature[5 * k + 5] = -(b.arm_x * multiplier[0] + b.arm_y * multiplier[1]);
+    write(a, b, g, jacobian);
+    bend(a, b, multiplier, curvature);
+  }
+  JointPattern pattern() const override {
+    JointPattern pattern{{1, 0, 1, 1, 0, 1, 0, 1, 1, 0, 1, 1}, std::vector<char>(k * k, 0)};
+    pattern.curvature[2 * k + 2] = pattern.curvature[5 * k + 5] = 1;
+    return pattern;
   }
   void second_rate(const Motion& motion, double* out) const override {
     const auto a = first_.at(motion.q), b = second_.at(motion.q);
     const double w1 = speed(motion, 2), w2 = speed(motion, 5);
     out[0] = a.arm_x * w1 * w1 - b.arm_x * w2 * w2;
     out[1] = a.arm_y * w1 * w1 - b.arm_y * w2 * w2;
+  }
+
+ private:
+  static void write(const PlanePoint::Now& a, const PlanePoint::Now& b, double* g, double* jacobian) {
+    g[0] = b.x - a.x;
+    g[1] = b.y - a.y;
+    const double rows[2][k] = {{-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y}, {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x}};
+    std::copy(rows[0], rows[0] + 2 * k, jacobian);
+  }
+  static void bend(const PlanePoint::Now& a, const PlanePoint::Now& b, const double* multiplier, double* curvature) {
+    std::fill(curvature, curvature + k * k, 0.0);
+    curvature[2 * k + 2] = a.arm_x * multiplier[0] + a.arm_y * multiplier[1];
+    curvature[5 * k + 5] = -(b.arm_x * multiplier[0] + b.arm_y * multiplier[1]);
   }
 };
 
@@ -71,9 +88,17 @@ class Rigid final : public Revolute {
 
   void constraint(const Motion& motion, double* g, double* jacobian) const override {
     Revolute::constraint(motion, g, jacobian);
-    g[2] = angle_between(motion.q) - angle_;
-    const double row[k] = {0.0, 0.0, -1.0, 0.0, 0.0, 1.0};
-    std::copy(row, row + k, jacobian + 2 * k);
+    add_angle(motion, g, jacobian);
+  }
+  void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
+                 double* curvature) const override {
+    Revolute::linearise(motion, multiplier, g, jacobian, curvature);
+    add_angle(motion, g, jacobian);
+  }
+  JointPattern pattern() const override {
+    JointPattern pattern = Revolute::pattern();
+    pattern.jacobian.insert(pattern.jacobian.end(), {0, 0, 1, 0, 0, 1});
+    return pattern;
   }
   void second_rate(const Motion& motion, double* out) const override {
     Revolute::second_rate(motion, out);
@@ -81,6 +106,12 @@ class Rigid final : public Revolute {
   }
 
  private:
+  void add_angle(const Motion& motion, double* g, double* jacobian) const {
+    g[2] = angle_between(motion.q) - angle_;
+    const double row[k] = {0.0, 0.0, -1.0, 0.0, 0.0, 1.0};
+    std::copy(row, row + k, jacobian + 2 * k);
+  }
+
   double angle_;
 };
 
@@ -127,25 +158,32 @@ class Distance final : public PlaneJoint {
   std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
 
   void constraint(const Motion& motion, double* g, double* jacobian) const override {
+    write(first_.at(motion.q), second_.at(motion.q), g, jacobian);
+  }
+  void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
+    hessian(first_.at(motion.q), second_.at(motion.q), multiplier[0] * inverse_, curvature);
+  }
+  void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
+                 double* curvature) const override {
     const auto a = first_.at(motion.q), b = second_.at(motion.q);
+    write(a, b, g, jacobian);
+    hessian(a, b, multiplier[0] * inverse_, curvature);
+  }
+  void second_rate(const Motion& motion, double* out) const override {
+    double h[k * k];
+    hessian(first_.at(motion.q), second_.at(motion.q), inverse_, h);
+    out[0] = along_velocity(motion, h);
+  }
+
+ private:
+  void write(const PlanePoint::Now& a, const PlanePoint::Now& b, double* g, double* jacobian) const {
     const double dx = b.x - a.x, dy = b.y - a.y, ux = dx * inverse_, uy = dy * inverse_;
     g[0] = 0.5 * (dx * ux + dy * uy - length_);
     const double row[k] = {-ux, -uy, ux * a.arm_y - uy * a.arm_x, ux, uy, uy * b.arm_x - ux * b.arm_y};
     std::copy(row, row + k, jacobian);
   }
-  void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
-    hessian(motion, multiplier[0] * inverse_, curvature);
-  }
-  void second_rate(const Motion& motion, double* out) const override {
-    double h[k * k];
-    hessian(motion, inverse_, h);
-    out[0] = along_velocity(motion, h);
-  }
-
- private:
   /// weight times the second derivatives of d . d / 2: those of d against d, and the slopes of d against each other.
-  void hessian(const Motion& motion, double weight, double* h) const {
-    const auto a = first_.at(motion.q), b = second_.at(motion.q);
+  static void hessian(const PlanePoint::Now& a, const PlanePoint::Now& b, double weight, double* h) {
     const double dx = b.x - a.x, dy = b.y - a.y;
     const double slope_x[k] = {-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y};
     const double slope_y[k] = {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x};

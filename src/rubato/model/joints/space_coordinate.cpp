@@ -81,4 +81,8 @@ std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinat
   return std::make_unique<Drive<SpaceCoordinate>>(std::move(name), s, formula, parameters, when);
 }
 
+std::unique_ptr<Joint> make_lock_joint(std::string name, const SpaceCoordinate& s, double at, int lock) {
+  return std::make_unique<LockJoint<SpaceCoordinate>>(std::move(name), s, at, lock);
+}
+
 }  // namespace rubato::model

@@ -51,5 +51,6 @@ std::unique_ptr<Element> make_joint_damper(std::string name, const SpaceCoordina
                                            const AtLock& when = {});
 std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinate& s, const std::string& formula,
                                           const numerics::Parameters& parameters, const AtLock& when = {});
+std::unique_ptr<Joint> make_lock_joint(std::string name, const SpaceCoordinate& s, double at, int lock);
 
 }  // namespace rubato::model

@@ -1,4 +1,5 @@
 #include <rubato/model/joints/space_joints.hpp>
+#include <rubato/model/joints/space_slopes.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -17,6 +18,7 @@ struct Thread {
   std::size_t along;  // row
   TurnAngle angle;
   double lead;
+  double lead_a_radian() const { return lead / (2.0 * std::numbers::pi); }
 };
 
 class SpaceJoint final : public Joint {
@@ -38,50 +40,81 @@ class SpaceJoint final : public Joint {
   }
 
   void constraint(const Motion& motion, double* g, double* jacobian) const override {
-    const SpacePair pair = pair_of(motion.q, first_, second_);
-    SpaceValue value;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value, SpaceDetail::gradient);
-      g[i] = value.value;
-      Eigen::Map<Vector12>(jacobian + i * k) = value.gradient;
-    }
+    write(pair_of(motion.q, first_, second_), g, jacobian);
   }
   void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
+    bend(pair_of(motion.q, first_, second_), multiplier, curvature);
+  }
+  void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
+                 double* curvature) const override {
     const SpacePair pair = pair_of(motion.q, first_, second_);
-    Eigen::Map<Eigen::Matrix<double, k, k, Eigen::RowMajor>> sum(curvature);
-    sum.setZero();
-    SpaceValue value;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value, SpaceDetail::slope);
-      sum += multiplier[i] * value.slope;
-    }
+    write(pair, g, jacobian);
+    bend(pair, multiplier, curvature);
   }
   void second_rate(const Motion& motion, double* out) const override {
     const SpacePair pair = pair_of(motion.q, first_, second_);
     Vector12 v;
     for (int i = 0; i < k; ++i) v[i] = motion.v[places_[static_cast<std::size_t>(i)]];
-    SpaceValue value;
+    double slope[k * k];
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      evaluate_row(i, pair, value, SpaceDetail::slope);
-      out[i] = v.dot(value.slope * v);
+      SlopeSum sum(slope);
+      sum.setZero();
+      add_row_slope(i, pair, 1.0, sum);
+      out[i] = v.dot(sum * v);
     }
   }
   bool has_symmetric_curvature() const override { return false; }
+  JointPattern pattern() const override {
+    JointPattern pattern{std::vector<char>(rows_.size() * k, 0), std::vector<char>(k * k, 0)};
+    const auto add = [&](std::size_t row, const SpacePattern& of_row) {
+      for (std::size_t i = 0; i < k; ++i) {
+        if (of_row.gradient[i]) pattern.jacobian[row * k + i] = 1;
+        for (std::size_t j = 0; j < k; ++j)
+          if (of_row.slope[i][j]) pattern.curvature[i * k + j] = 1;
+      }
+    };
+    for (std::size_t i = 0; i < rows_.size(); ++i) add(i, pattern_of(rows_[i], first_, second_));
+    for (const Thread& thread : threads_) add(thread.along, pattern_of(thread.angle, first_, second_));
+    return pattern;
+  }
 
  private:
-  void evaluate_row(std::size_t i, const SpacePair& pair, SpaceValue& value, SpaceDetail detail) const {
-    evaluate(rows_[i], pair, value, detail);
-    for (const Thread& thread : threads_) {
-      if (thread.along != i) continue;
-      SpaceValue angle;
-      evaluate(thread.angle, pair, angle, detail);
-      const double turn = 2.0 * std::numbers::pi, lead_a_radian = thread.lead / turn;
-      // The angle is known up to whole turns, which the displacement tells.
-      const double turns = std::round((value.value / lead_a_radian - angle.value) / turn);
-      value.value -= lead_a_radian * (angle.value + turn * turns);
-      value.gradient -= lead_a_radian * angle.gradient;
-      if (detail == SpaceDetail::slope) value.slope -= lead_a_radian * angle.slope;
+  void write(const SpacePair& pair, double* g, double* jacobian) const {
+    SpaceValue value;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      evaluate(rows_[i], pair, value, SpaceDetail::gradient);
+      for (const Thread& thread : threads_)
+        if (thread.along == i) subtract_turns(thread, pair, value);
+      g[i] = value.value;
+      Eigen::Map<Vector12>(jacobian + i * k) = value.gradient;
     }
+  }
+  void bend(const SpacePair& pair, const double* multiplier, double* curvature) const {
+    SlopeSum sum(curvature);
+    sum.setZero();
+    Vector3 along = Vector3::Zero();  // gaps in the world are one: they are linear in their direction
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (const auto* gap = std::get_if<WorldGap>(&rows_[i]))
+        along += multiplier[i] * gap->along;
+      else
+        add_row_slope(i, pair, multiplier[i], sum);
+    }
+    if (!along.isZero(0.0)) add_slope(WorldGap{along}, pair, 1.0, sum);
+  }
+
+  void add_row_slope(std::size_t i, const SpacePair& pair, double weight, SlopeSum& sum) const {
+    add_slope(rows_[i], pair, weight, sum);
+    for (const Thread& thread : threads_)
+      if (thread.along == i) add_slope(thread.angle, pair, -weight * thread.lead_a_radian(), sum);
+  }
+  /// The angle is known up to whole turns, which the displacement tells.
+  static void subtract_turns(const Thread& thread, const SpacePair& pair, SpaceValue& value) {
+    SpaceValue angle;
+    evaluate(thread.angle, pair, angle, SpaceDetail::gradient);
+    const double turn = 2.0 * std::numbers::pi, lead = thread.lead_a_radian();
+    const double turns = std::round((value.value / lead - angle.value) / turn);
+    value.value -= lead * (angle.value + turn * turns);
+    value.gradient -= lead * angle.gradient;
   }
 
   SpacePoint first_, second_;

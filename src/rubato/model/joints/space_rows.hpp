@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <variant>
 
 // Scalar functions of the configuration of two nodes in space, with their first and second derivatives by increments
@@ -60,6 +61,14 @@ enum class SpaceDetail { gradient, slope };
 
 /// @param result  overwritten; without SpaceDetail::slope its slope stays as it is
 void evaluate(const SpaceRow& row, const SpacePair& pair, SpaceValue& result, SpaceDetail detail = SpaceDetail::slope);
+
+/// Where the gradient and the slope of a row may differ from zero.
+struct SpacePattern {
+  std::array<bool, 12> gradient{};
+  std::array<std::array<bool, 12>, 12> slope{};
+};
+/// @param first, second  the points of the pair that the row is of
+SpacePattern pattern_of(const SpaceRow& row, const SpacePoint& first, const SpacePoint& second);
 
 /// The value alone [rad].
 double angle_of(const TurnAngle& row, const SpacePair& pair);

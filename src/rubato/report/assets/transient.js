@@ -170,10 +170,16 @@ function is_transient(analysis) {
 function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
   const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
+  const is_of_joints = (variable) => variable.dimension.endsWith("joint");
   const of = (names) => names.map((name) => variable_of(table, name))
-    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable));
-  const stops = table.variables.map((variable, index) => ({...variable, index}))
-    .filter((variable) => is_of_stops(variable) && variable.labels.length);
+    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable) && !is_of_joints(variable));
+  const those = (belongs) => table.variables.map((variable, index) => ({...variable, index}))
+    .filter((variable) => variable.labels.length && belongs(variable));
+  const stops = those(is_of_stops), joints = those(is_of_joints);
+  const is_reaction = (variable) => variable.name.startsWith("reaction_");
+  const sliding = joints.filter((variable) => variable.dimension === "sliding_joint");
+  const reactions = joints.filter(is_reaction);
+  const efforts = joints.filter((variable) => !is_reaction(variable) && !sliding.includes(variable));
   const motion = of(["position", "velocity", "acceleration"]);
   const rotations = of(["angle", "angular_velocity", "angular_acceleration"]);
   const sliders = of(["force", "slip", "displacement"]), hinges = of(["moment", "slip_angle"]);
@@ -186,7 +192,17 @@ function write_transient(chapter, analysis) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
     if (motion.length > 1) add_section(chapter, "Phase portrait", phase_portrait(table, motion[0], motion[1]));
   }
-  if (rotations.length) add_section(chapter, "Rotations", history_figure(table, rotations, "Rotations of the nodes"));
+  if (rotations.length) {
+    const subject = joints.length ? "Rotations of nodes and joints" : "Rotations of the nodes";
+    add_section(chapter, "Rotations", history_figure(table, rotations, subject));
+  }
+  if (sliding.length) add_section(chapter, "Sliding joints", history_figure(table, sliding, "Travel of the joints that slide"));
+  if (reactions.length) {
+    add_section(chapter, "Joint reactions", history_figure(table, reactions, "What each joint does to its second part"));
+  }
+  if (efforts.length) {
+    add_section(chapter, "Friction and drives of joints", history_figure(table, efforts, "Forces and moments of friction and drives"));
+  }
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const [force] = of(["force"]);
