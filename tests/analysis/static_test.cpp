@@ -307,6 +307,64 @@ TEST(StaticEquilibrium, OfAFourBarLinkageDoesNotExist) {
   EXPECT_EQ(names, (std::vector<std::string>{"2.x", "3.x"}));
 }
 
+/// A bar from a clamped node "a" to "b" along `along`, hinged at both ends, with a unit load on b.`loaded`.
+system::LocallyNonlinear hinged_bar(std::vector<double> along, model::BeamDescription::Formulation formulation,
+                                    const std::string& loaded) {
+  const bool in_plane = along.size() == 2;
+  model::ModelDescription description = portal(3.0, 4.0);
+  model::StructureDescription& bar = description.structure;
+  bar.nodes.resize(2);
+  bar.nodes[0].name = "a";
+  bar.nodes[0].position.assign(along.size(), 0.0);
+  bar.nodes[1].name = "b";
+  bar.nodes[1].position.assign(along.begin(), along.end());
+  bar.sections[0].shear_factor = {0.8};
+  if (!in_plane) {
+    bar.sections[0].inertia = {2e-6, 1e-6};
+    bar.sections[0].torsion = 1e-7;
+    bar.sections[0].shear_factor = {0.8, 0.7};
+  }
+  bar.beams.resize(1);
+  bar.beams[0].nodes = {"a", "b"};
+  bar.beams[0].formulation = formulation;
+  bar.beams[0].release = {{{"rz"}, {"rz"}}};
+  if (!in_plane) {
+    // Off the axes of the model what is left of the inertia of a node must not be about a skew axis alone.
+    const bool is_skew = along[0] * along[1] != 0.0;
+    if (!is_skew) bar.beams[0].release = {{{"ry", "rz"}, {"ry", "rz"}}};
+    bar.beams[0].orientation = {is_skew ? 0.0 : 0.3, 1.0, is_skew ? 0.0 : -0.2};
+  }
+  bar.supports.resize(1);
+  bar.supports[0].node = "a";
+  bar.supports[0].fix = {"x", "y", "rz"};
+  if (!in_plane) bar.supports[0].fix = {"x", "y", "z", "rx", "ry", "rz"};
+  description.held_forces = {{loaded, 1.0, {}}};
+  return assembled(description);
+}
+
+// The far end swings about the near one, whatever the direction of the bar.
+TEST(StaticEquilibrium, OfAHingedBarDoesNotExistInAnyDirection) {
+  using Formulation = model::BeamDescription::Formulation;
+  const double skew = 0.7;
+  for (const Formulation formulation : {Formulation::euler_bernoulli, Formulation::timoshenko})
+    for (const double length : {1.0, 0.3, 1.0 / 3.0, 7.0}) {
+      const std::vector<std::pair<std::vector<double>, std::string>> bars{
+          {{length, 0.0}, "b.y"},
+          {{0.0, length}, "b.x"},
+          {{length * std::cos(skew), length * std::sin(skew)}, "b.x"},
+          {{length, 0.0, 0.0}, "b.y"},
+          {{length, 0.0, 0.0}, "b.z"},
+          {{0.0, 0.0, -length}, "b.x"},
+          {{length * std::cos(skew), length * std::sin(skew), 0.0}, "b.y"}};
+      for (const auto& [along, loaded] : bars) {
+        const auto system = hinged_bar(along, formulation, loaded);
+        const StaticEquilibrium found = find_equilibrium(system, {});
+        ASSERT_EQ(found.outcome, StaticOutcome::mechanism) << loaded << " length " << length;
+        EXPECT_EQ(std::count(found.moving.begin(), found.moving.end(), place_of(system, loaded)), 1) << loaded;
+      }
+    }
+}
+
 /// A beam of 2 m in equal parts, held at both ends.
 system::LocallyNonlinear held_beam(int elements, bool by_releases) {
   model::ModelDescription description = portal(2.0, 1.0);

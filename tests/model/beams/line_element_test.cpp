@@ -242,6 +242,32 @@ TEST(Release, OfBothRotationsLeavesATruss) {
     }
 }
 
+// Nothing bends a beam whose ends turn freely: no round-off may hold it across its axis, however long, thick or soft in
+// shear it is. The other terms are those of a rod.
+TEST(Release, OfBothRotationsLeavesExactlyNoBendingStiffness) {
+  LineProperties p = plane_beam();
+  p.shear_modulus = 0.4 * p.young;
+  p.inertia_y = 3e-7;
+  p.torsion = 2e-7;
+  for (const int dimension : {2, 3})
+    for (const double shear_area : {0.0, 1e-3, 8e-4 / 3.0, 1e-9})
+      for (const double length : {0.1, 1.0, 1.7, 1.0 / 3.0, 200.0}) {
+        p.shear_area_y = p.shear_area_z = shear_area;
+        LineMatrix stiffness, mass;
+        local_matrices(p, dimension, length, stiffness, mass);
+        const unsigned bending = dimension == 2 ? 1u << 2 | 1u << 5 : 1u << 4 | 1u << 5 | 1u << 10 | 1u << 11;
+        ASSERT_TRUE(release(static_cast<std::uint16_t>(bending), stiffness, mass));
+        LineMatrix expected = LineMatrix::Zero(stiffness.rows(), stiffness.cols());
+        const auto add_rod = [&](int first, int second, double k) {
+          expected(first, first) = expected(second, second) = k;
+          expected(first, second) = expected(second, first) = -k;
+        };
+        add_rod(0, dimension == 2 ? 3 : 6, p.young * p.area / length);
+        if (dimension == 3) add_rod(3, 9, p.shear_modulus * p.torsion / length);
+        EXPECT_EQ(stiffness, expected) << dimension << " " << shear_area << " " << length;
+      }
+}
+
 TEST(Release, RefusesWhatNothingResists) {
   for (const std::uint16_t released :
        {1u << 0 | 1u << 3, 1u << 1 | 1u << 4, 1u << 1 | 1u << 2 | 1u << 5, 1u << 2 | 1u << 4 | 1u << 5}) {

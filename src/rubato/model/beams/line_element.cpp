@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <limits>
 
 namespace rubato::model {
 namespace {
@@ -149,7 +150,12 @@ bool release(std::uint16_t released, LineMatrix& stiffness, LineMatrix& mass) {
     shape(column, column) = 1.0;
     for (int i = 0; i < r; ++i) shape(gone[static_cast<std::size_t>(i)], column) = follows(i, j);
   }
+  // Where all resistance is released terms cancel, and what they leave is a stiffness of round-off that would hold
+  // a mechanism: zero belongs there.
+  constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
+  const LineMatrix terms = shape.cwiseAbs().transpose() * stiffness.cwiseAbs() * shape.cwiseAbs();
   stiffness = (shape.transpose() * stiffness * shape).eval();
+  stiffness = (stiffness.array().abs() > round_off * terms.array()).select(stiffness, 0.0).eval();
   mass = (shape.transpose() * mass * shape).eval();
   for (LineMatrix* matrix : {&stiffness, &mass}) {
     *matrix = (0.5 * (*matrix + matrix->transpose())).eval();

@@ -62,7 +62,8 @@ void local_matrices(const LineProperties& properties, int dimension, double leng
 ///   K <- T^T K T,   M <- T^T M T
 ///
 /// exact for the stiffness; the mass is that of the motion with the static shape, as consistent as the element's own
-/// cubic (Guyan 1965; Irons 1965). Rows and columns of what is released become zero.
+/// cubic (Guyan 1965; Irons 1965). Rows and columns of what is released become zero, and so does a stiffness that is
+/// round-off of the terms that cancel in it.
 /// @param released  bit i: row i
 /// @return false, with the matrices as they were, where nothing resists a motion of what is released: a mechanism
 bool release(std::uint16_t released, LineMatrix& stiffness, LineMatrix& mass);
