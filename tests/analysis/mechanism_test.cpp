@@ -249,7 +249,7 @@ TEST(MechanismFailures, NameTheSingularConfigurationNextToWhichTheyAre) {
     system::State state = mechanism.start();
     const double c = std::cos(angle), s = std::sin(angle);
     state.q.tail<9>() << 0.5 * c, 0.5 * s, angle, 1.0 + 0.5 * c, 0.5 * s, angle, 0.5 + c, s, 0.0;
-    return analysis::failure_of(report, mechanism, state);
+    return analysis::failure_of(report, mechanism, state, -1);
   };
   // In line the four hinges ask twice that the bars keep their distance along it: nine coordinates and eight rows, of
   // which seven say something of their own.
