@@ -55,6 +55,12 @@ TEST(ExpressionFault, NamesAnUnknownNameItsPlaceAndTheNearest) {
       "Omega)");
   EXPECT_EQ(fault_of("3 * t"), "in the expression \"3 * t\": unknown name \"t\" at character 5; known: pi, N0, Omega");
   EXPECT_EQ(fault_of("3 * t", true), "accepted");
+  EXPECT_EQ(fault_of("5 s"),
+            "in the expression \"5 s\": unknown name \"s\" at character 3; units are implied (m, kg, s, N, rad): write "
+            "the number alone");
+  EXPECT_EQ(fault_of("1.5e3N"),
+            "in the expression \"1.5e3N\": unknown name \"N\" at character 6; units are implied (m, kg, s, N, rad): "
+            "write the number alone");
   EXPECT_EQ(fault_of("_pi"),
             "in the expression \"_pi\": unknown name \"_pi\" at character 1; did you mean \"pi\"? (known: "
             "pi, N0, Omega)");

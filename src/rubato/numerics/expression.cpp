@@ -1,10 +1,12 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/time_formula.hpp>
 
 #include <muParser.h>
 
 #include <cctype>
 #include <numbers>
+#include <optional>
 #include <regex>
 
 namespace rubato::numerics {
@@ -37,7 +39,53 @@ std::string without_position(const std::string& message) {
   return text;
 }
 
+/// Whether a name follows a number without an operator between, as a unit does.
+bool is_after_number(const std::string& text, int place) {
+  if (place <= 0) return false;
+  const auto before = text.find_last_not_of(" \t", static_cast<std::size_t>(place) - 1);
+  if (before == std::string::npos) return false;
+  const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
+  std::size_t begin = before + 1;
+  while (begin > 0 && is_part(text[begin - 1])) --begin;
+  return begin <= before && (text[begin] == '.' || std::isdigit(static_cast<unsigned char>(text[begin])));
+}
+
+/// Throws InvalidInput where the text is no formula of the parameters and, unless it is null, of t.
+void prepare(mu::Parser& parser, const std::string& text, const Parameters& parameters, double* t) {
+  try {
+    parser.ClearConst();
+    parser.DefineConst("pi", std::numbers::pi);
+    for (const auto& [name, value] : parameters) parser.DefineConst(name, value);
+    if (t) parser.DefineVar("t", t);
+    parser.SetExpr(text);
+    (void)parser.Eval();
+    require_one_value(text, parser);
+  } catch (const mu::Parser::exception_type& fault) {
+    std::string message = "in the expression \"" + text + "\": ";
+    const bool at_end = fault.GetPos() < 0 || static_cast<std::size_t>(fault.GetPos()) >= text.size();
+    const std::string where = at_end ? " at its end" : " at character " + std::to_string(fault.GetPos() + 1);
+    if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
+      std::vector<std::string> known{"pi"};
+      if (t) known.push_back("t");
+      for (const auto& parameter : parameters) known.push_back(parameter.first);
+      message += "unknown name \"" + fault.GetToken() + "\"" + where;
+      message += is_after_number(text, fault.GetPos())
+                     ? "; units are implied (m, kg, s, N, rad): write the number alone"
+                     : suggestion(fault.GetToken(), known);
+    } else {
+      message += without_position(fault.GetMsg()) + where;
+    }
+    throw InvalidInput(message);
+  }
+}
+
 }  // namespace
+
+void require_expression(const std::string& text, const Parameters& parameters, bool of_time) {
+  mu::Parser parser;
+  double t = 0.0;
+  prepare(parser, text, parameters, of_time ? &t : nullptr);
+}
 
 bool is_function(const std::string& name) {
   const mu::Parser parser;
@@ -47,32 +95,18 @@ bool is_function(const std::string& name) {
 struct Expression::Engine {
   mu::Parser parser;
   double t = 0.0;
+  std::optional<TimeFormula> switching;  // where it branches
 };
 
 Expression::Expression(std::string text, const Parameters& parameters, bool of_time)
     : text_(std::move(text)), parameters_(parameters), of_time_(of_time), engine_(std::make_unique<Engine>()) {
+  prepare(engine_->parser, text_, parameters_, of_time_ ? &engine_->t : nullptr);
+  if (!of_time_) return;
   try {
-    mu::Parser& parser = engine_->parser;
-    parser.ClearConst();
-    parser.DefineConst("pi", std::numbers::pi);
-    for (const auto& [name, value] : parameters_) parser.DefineConst(name, value);
-    if (of_time_) parser.DefineVar("t", &engine_->t);
-    parser.SetExpr(text_);
-    (void)parser.Eval();
-    require_one_value(text_, parser);
-  } catch (const mu::Parser::exception_type& fault) {
-    std::string message = "in the expression \"" + text_ + "\": ";
-    const bool at_end = fault.GetPos() < 0 || static_cast<std::size_t>(fault.GetPos()) >= text_.size();
-    const std::string where = at_end ? " at its end" : " at character " + std::to_string(fault.GetPos() + 1);
-    if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-      std::vector<std::string> known{"pi"};
-      if (of_time_) known.push_back("t");
-      for (const auto& parameter : parameters_) known.push_back(parameter.first);
-      message += "unknown name \"" + fault.GetToken() + "\"" + where + suggestion(fault.GetToken(), known);
-    } else {
-      message += without_position(fault.GetMsg()) + where;
-    }
-    throw InvalidInput(message);
+    TimeFormula formula(text_, parameters_);
+    if (formula.has_switches()) engine_->switching = std::move(formula);
+  } catch (const InvalidInput&) {
+    // Something in it has no known derivative, and its switches stay unknown.
   }
 }
 
@@ -85,6 +119,18 @@ Expression::~Expression() = default;
 double Expression::operator()(double t) const {
   engine_->t = t;
   return engine_->parser.Eval();
+}
+
+double Expression::from_left(double t) const {
+  return engine_->switching ? engine_->switching->from_left(t).value : (*this)(t);
+}
+
+double Expression::from_right(double t) const {
+  return engine_->switching ? engine_->switching->from_right(t).value : (*this)(t);
+}
+
+std::vector<double> Expression::switches(double from, double to) const {
+  return engine_->switching ? engine_->switching->switches(from, to) : std::vector<double>{};
 }
 
 }  // namespace rubato::numerics

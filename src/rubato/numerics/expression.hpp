@@ -31,6 +31,13 @@ class Expression {
   /// Its value; may be non-finite (division by zero, log of a negative number): the caller decides what that means.
   double operator()(double t = 0.0) const;
 
+  /// The limits at t, which differ where a branch changes there and the derivatives of the formula are known
+  /// (TimeFormula); elsewhere they are the value.
+  double from_left(double t) const;
+  double from_right(double t) const;
+  /// The times in (from, to) at which a branch changes, as TimeFormula knows them; none where it does not.
+  std::vector<double> switches(double from, double to) const;
+
   const std::string& text() const { return text_; }
 
  private:
@@ -40,6 +47,9 @@ class Expression {
   bool of_time_ = false;
   std::unique_ptr<Engine> engine_;
 };
+
+/// Throws InvalidInput where Expression would.
+void require_expression(const std::string& text, const Parameters& parameters, bool of_time = false);
 
 /// Whether a name is one of muParser's functions, which a parameter cannot bear.
 bool is_function(const std::string& name);

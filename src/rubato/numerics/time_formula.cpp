@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -56,7 +57,7 @@ D atan2_of(const D& y, const D& x) {
 }
 
 using Entry = std::pair<const char*, D (*)(double)>;
-const std::array<Entry, 20> functions{{
+const std::array<Entry, 18> functions{{
     {"sin",
      [](double x) {
        return D{std::sin(x), std::cos(x), -std::sin(x)};
@@ -138,18 +139,27 @@ const std::array<Entry, 20> functions{{
        const double f = std::sqrt(x);
        return D{f, 0.5 / f, -0.25 / (f * x)};
      }},
-    {"sign",
-     [](double x) {
-       return D{x < 0.0 ? -1.0 : x > 0.0 ? 1.0 : 0.0, 0.0, 0.0};
-     }},
-    {"abs",
-     [](double x) {
-       return D{std::abs(x), x < 0.0 ? -1.0 : 1.0, 0.0};
-     }},
 }};
 
-D rounded(double x) { return {std::floor(x + 0.5), 0.0, 0.0}; }
 D truth(bool is_true) { return {is_true ? 1.0 : 0.0, 0.0, 0.0}; }
+
+/// Of t and of what is compared: this near to a switch counts as at it. Twice what add_switches takes for the same
+/// time.
+constexpr double at_switch = 8.0 * std::numeric_limits<double>::epsilon();
+
+int sign_of(double x) { return x < 0.0 ? -1 : x > 0.0 ? 1 : 0; }
+
+/// The sign of a - b, at a switch just before or after it; `unordered` where one is no number.
+constexpr int unordered = 2;
+int order(const D& a, const D& b, double t, int direction) {
+  const double gap = a.value - b.value, rate = a.rate - b.rate, second_rate = a.second_rate - b.second_rate;
+  const double near = at_switch * (std::abs(a.value) + std::abs(b.value) + std::abs(t * rate));
+  if (direction != 0 && std::abs(gap) <= near) {
+    if (rate != 0.0) return direction * sign_of(rate);
+    if (second_rate != 0.0) return sign_of(second_rate);
+  }
+  return a.value < b.value ? -1 : a.value > b.value ? 1 : a.value == b.value ? 0 : unordered;
+}
 
 }  // namespace
 
@@ -321,7 +331,12 @@ class TimeFormulaParser {
       return add(Kind::quotient, total, count);
     }
     if (name == "atan2" && arguments.size() == 2) return add(Kind::angle, arguments[0], arguments[1]);
-    TimeFormula::Function function = name == "rint" ? &rounded : nullptr;
+    if (arguments.size() == 1) {
+      if (name == "abs") return add(Kind::magnitude, arguments[0]);
+      if (name == "sign") return add(Kind::direction, arguments[0]);
+      if (name == "rint") return add(Kind::rounded, arguments[0]);
+    }
+    TimeFormula::Function function = nullptr;
     for (const auto& [known, of] : functions)
       if (name == known) function = of;
     if (!function || arguments.size() != 1) {
@@ -340,21 +355,47 @@ class TimeFormulaParser {
 };
 
 TimeFormula::TimeFormula(std::string text, const Parameters& parameters) : text_(std::move(text)) {
-  (void)Expression(text_, parameters, true);  // says what is wrong
+  require_expression(text_, parameters, true);
   TimeFormulaParser(*this, parameters).parse();
 }
 
-TimeDerivatives TimeFormula::operator()(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t); }
+TimeDerivatives TimeFormula::operator()(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, 0); }
 
-TimeDerivatives TimeFormula::at(int index, double t) const {
+TimeDerivatives TimeFormula::from_left(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, -1); }
+
+TimeDerivatives TimeFormula::from_right(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, 1); }
+
+TimeDerivatives TimeFormula::at(int index, double t, int direction) const {
   const Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.kind == Kind::constant) return {node.constant, 0.0, 0.0};
   if (node.kind == Kind::time) return {t, 1.0, 0.0};
-  const D a = at(node.first, t);
-  if (node.kind == Kind::negative) return {-a.value, -a.rate, -a.second_rate};
-  if (node.kind == Kind::function) return chain(node.function(a.value), a);
-  if (node.kind == Kind::choice) return at(a.value != 0.0 ? node.second : node.third, t);
-  const D b = at(node.second, t);
+  const D a = at(node.first, t, direction);
+  switch (node.kind) {
+    case Kind::negative:
+      return {-a.value, -a.rate, -a.second_rate};
+    case Kind::function:
+      return chain(node.function(a.value), a);
+    case Kind::magnitude: {
+      const double sign = order(a, {}, t, direction) == -1 ? -1.0 : 1.0;
+      return {std::abs(a.value), sign * a.rate, sign * a.second_rate};
+    }
+    case Kind::direction: {
+      const int sign = order(a, {}, t, direction);
+      return {sign == unordered ? 0.0 : sign, 0.0, 0.0};
+    }
+    case Kind::rounded: {
+      const double nearest = std::floor(a.value + 0.5), step = std::floor(a.value) + 0.5;
+      if (direction == 0) return {nearest, 0.0, 0.0};
+      // At the step between two integers the side tells.
+      const int side = order(a, {step, 0.0, 0.0}, t, direction);
+      return {side == unordered ? nearest : side < 0 ? step - 0.5 : step + 0.5, 0.0, 0.0};
+    }
+    case Kind::choice:
+      return at(a.value != 0.0 ? node.second : node.third, t, direction);
+    default:
+      break;
+  }
+  const D b = at(node.second, t, direction);
   switch (node.kind) {
     case Kind::sum:
       return {a.value + b.value, a.rate + b.rate, a.second_rate + b.second_rate};
@@ -368,26 +409,36 @@ TimeDerivatives TimeFormula::at(int index, double t) const {
       return power(a, b);
     case Kind::angle:
       return atan2_of(a, b);
-    case Kind::least:
-      return b.value < a.value ? b : a;
-    case Kind::greatest:
-      return b.value > a.value ? b : a;
-    case Kind::less:
-      return truth(a.value < b.value);
-    case Kind::less_or_equal:
-      return truth(a.value <= b.value);
-    case Kind::greater:
-      return truth(a.value > b.value);
-    case Kind::greater_or_equal:
-      return truth(a.value >= b.value);
-    case Kind::equal:
-      return truth(a.value == b.value);
-    case Kind::unequal:
-      return truth(a.value != b.value);
+    // Both are continuous: at a switch only the derivatives have sides.
+    case Kind::least: {
+      const D& branch = order(b, a, t, direction) == -1 ? b : a;
+      return {b.value < a.value ? b.value : a.value, branch.rate, branch.second_rate};
+    }
+    case Kind::greatest: {
+      const D& branch = order(b, a, t, direction) == 1 ? b : a;
+      return {b.value > a.value ? b.value : a.value, branch.rate, branch.second_rate};
+    }
     case Kind::both:
       return truth(a.value != 0.0 && b.value != 0.0);
-    default:
+    case Kind::either:
       return truth(a.value != 0.0 || b.value != 0.0);
+    default:
+      break;
+  }
+  const int sign = order(a, b, t, direction);
+  switch (node.kind) {
+    case Kind::less:
+      return truth(sign == -1);
+    case Kind::less_or_equal:
+      return truth(sign == -1 || sign == 0);
+    case Kind::greater:
+      return truth(sign == 1);
+    case Kind::greater_or_equal:
+      return truth(sign == 1 || sign == 0);
+    case Kind::equal:
+      return truth(sign == 0);
+    default:
+      return truth(sign != 0);
   }
 }
 

@@ -14,18 +14,31 @@ struct TimeDerivatives {
 
 /// A formula of named values and of the time t [s], as Expression knows it, with its derivatives with respect to t:
 /// exact but for round-off, by forward differentiation of each operation (Griewank and Walther 2008, chapter 13). Where
-/// a formula branches (`? :`, abs, min, max, sign) they are those of the branch that is taken; a step has none.
-/// Evaluates without allocating; may be used by several threads at once.
+/// a formula branches (comparisons, abs, min, max, sign, rint) they are those of the branch that is taken; a step has
+/// none. Evaluates without allocating; may be used by several threads at once.
 class TimeFormula {
  public:
   /// Throws InvalidInput as Expression does.
   TimeFormula(std::string text, const Parameters& parameters);
 
+  /// As it is written.
   TimeDerivatives operator()(double t) const;
+  /// The limits at t: a branch that changes there, to round-off of t, is the one on that side.
+  TimeDerivatives from_left(double t) const;
+  TimeDerivatives from_right(double t) const;
+
+  /// Whether it branches anywhere.
+  bool has_switches() const;
+  /// The times in (from, to) at which a branch changes, rising: where what is compared becomes equal, or the argument
+  /// of abs or sign vanishes, or that of rint is half an integer. To round-off where that is straight in t between the
+  /// changes within it; else it is followed with steps of at most 1/16384 of the interval and of a part of its own time
+  /// scale: a pair of changes within a shorter time, out of nothing, stays unseen.
+  std::vector<double> switches(double from, double to) const;
   const std::string& text() const { return text_; }
 
  private:
   friend class TimeFormulaParser;
+  friend class SwitchSearch;
   using Function = TimeDerivatives (*)(double);  // value and derivatives with respect to the argument
   enum class Kind {
     constant,
@@ -37,7 +50,10 @@ class TimeFormula {
     quotient,
     power,
     function,
-    angle,  // atan2
+    magnitude,  // abs
+    direction,  // sign
+    rounded,    // rint
+    angle,      // atan2
     least,
     greatest,
     less,
@@ -56,10 +72,16 @@ class TimeFormula {
     Function function = nullptr;
     int first = -1, second = -1, third = -1;
   };
-  TimeDerivatives at(int node, double t) const;
+  /// @param direction  of a limit: -1 or 1, just before or after t; 0: at t
+  TimeDerivatives at(int node, double t, int direction) const;
 
   std::string text_;
   std::vector<Node> nodes_;  // the last is the whole
 };
+
+/// Adds to sorted times those that do not coincide with one of them or with an end, to the round-off to which formulas
+/// know their switches.
+/// @param switches  in (from, to)
+void add_switches(const std::vector<double>& switches, double from, double to, std::vector<double>& times);
 
 }  // namespace rubato::numerics
