@@ -1,5 +1,6 @@
 #include <rubato/report/digest.hpp>
 #include <rubato/report/json.hpp>
+#include <rubato/report/step_distribution.hpp>
 #include <rubato/report/table_json.hpp>
 #include <rubato/report/table_pieces.hpp>
 
@@ -116,10 +117,10 @@ std::string table_json(const TableSource& table, const Extent& extent) {
   }
   return fmt::format(
       R"({{"name":{},"row_dimension":{},"rows":{},"attributes":{},"variables":{}],"overview":{}],"is_envelope":{},)"
-      R"("window":{},"window_first_row":{},"key_numbers":{}}})",
+      R"("window":{},"window_first_row":{},"key_numbers":{},"distribution":{}}})",
       json_string(table.name()), json_string(table.row_dimension()), rows, attributes_json(table.attributes()),
       variables, overview, is_envelope, window_rows > 0 ? window + ']' : "null", rows - window_rows,
-      is_timed ? key_numbers + ']' : "null");
+      is_timed ? key_numbers + ']' : "null", step_distribution_json(table));
 }
 
 }  // namespace rubato::report

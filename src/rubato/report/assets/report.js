@@ -56,7 +56,9 @@ function write_analysis(parent, analysis, index) {
   write_scene(chapter, analysis);
   if (is_transient(analysis)) {
     write_transient(chapter, analysis);
-    write_tables(chapter, analysis.tables.filter((table) => table.name !== "" && table.name !== "energy"));
+    const others = analysis.tables.filter((table) => table.name !== "" && table.name !== "energy");
+    others.filter(is_of_steps).forEach((table) => write_steps(chapter, table));
+    write_tables(chapter, others.filter((table) => !is_of_steps(table)));
   } else if (is_frequency_response(analysis)) {
     write_frequency_response(chapter, analysis);
   } else if (is_damper_curve(analysis)) {

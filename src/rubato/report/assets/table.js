@@ -16,9 +16,10 @@ function make_table({caption, columns, rows, groups = null}) {
     (group) => element("th", {scope: "colgroup", colspan: String(group.span)}, group.title)));
   const body = rows.map((row) => element("tr", {}, row.map((cell, index) => element(
     index === 0 ? "th" : "td", {scope: index === 0 ? "row" : undefined, class: cell_class(index)}, cell))));
+  const kind = columns.every((column) => column.is_text) ? "words" : undefined;
   return element("div", {class: rows.length > 25 ? "table" : "table short", id: `table-${number}`},
                  element("p", {class: "caption"}, element("b", {}, `Table ${number}. `), caption),
-                 element("div", {class: "scroll"}, element("table", {}, element("thead", {}, group_row, element("tr", {}, heads)),
+                 element("div", {class: "scroll"}, element("table", {class: kind}, element("thead", {}, group_row, element("tr", {}, heads)),
                                                            element("tbody", {}, body))));
 }
 
