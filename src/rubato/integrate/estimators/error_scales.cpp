@@ -22,7 +22,7 @@ void ErrorScales::start(const system::State& state) {
 void ErrorScales::expect(const system::State& state) {
   const ResponseScales scales = space_.scales(state, state.auxiliary_acceleration, duration_);
   const double omega = scales.frequency_of(derivative_);
-  size_ = std::max({size_, scales.size(space_.most_from_acceleration()), space_.least_size()});
+  size_ = std::max({size_, space_.promised_size(scales), space_.least_size()});
   third_at_start_ = scales.derivative(3);
   y_ = std::pow(scales.derivative(derivative_), 2);
   rate_ = omega * omega * y_;
@@ -48,9 +48,9 @@ double ErrorScales::relative(double dq_squared, double dv_squared, const system:
   double size = size_, omega = frequency();
   if (!(size > 0.0 && y_ > 0.0)) {  // at rest until now: by what it is about to do
     const ResponseScales scales = space_.scales(to, to.auxiliary_acceleration, duration_);
-    if (scales.size(space_.most_from_acceleration()) == 0.0) return 0.0;
-    size = std::max(size, scales.size(space_.most_from_acceleration()));
+    size = std::max(size, space_.promised_size(scales));
     omega = scales.frequency_of(derivative_);
+    if (!(size > 0.0 && omega > 0.0)) return 0.0;
   }
   if (mixing_ == ErrorSpace::Mixing::always) omega = std::sqrt(omega * std::min(omega, speed_frequency()));
   if (is_contact) omega = std::min(omega, speed_frequency());

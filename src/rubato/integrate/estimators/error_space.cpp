@@ -22,7 +22,10 @@ class StructureSpace final : public ErrorSpace {
     constexpr double share = 0.1;
     return share * promised();
   }
-  double most_from_acceleration() override { return promised() > 0.0 ? promised() : HUGE_VAL; }
+  /// An acceleration brings no more than the loads do, however large it is at the start.
+  double promised_size(const ResponseScales& scales) override {
+    return scales.size(promised() > 0.0 ? promised() : HUGE_VAL);
+  }
   Mixing mixing() const override { return system_.stop_count() > 0 ? Mixing::closed : Mixing::never; }
   bool touches(const system::State& state) const override {
     return (state.slider_force.tail(system_.stop_count()).array() > 0.0).any();

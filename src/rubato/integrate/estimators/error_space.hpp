@@ -16,12 +16,12 @@ class ErrorSpace {
   virtual Index size() const = 0;
   /// M x, kept until the next call.
   virtual const Vector& times_mass(const Vector& x) = 0;
-  /// Size of the displacements of a state in the mass norm [m sqrt(kg)]; 0 where they mean nothing.
+  /// Size of the displacements of a state in the mass norm [m sqrt(kg)]; of a mechanism from where it started.
   virtual double displacement(const system::State& state) = 0;
   /// Size that errors are measured by even where nothing has moved yet [m sqrt(kg)].
   virtual double least_size() { return 0.0; }
-  /// Size beyond which an acceleration brings nothing, however large it is at the start [m sqrt(kg)].
-  virtual double most_from_acceleration() { return HUGE_VAL; }
+  /// Size that a state promises [m sqrt(kg)]; 0 where only what has moved counts.
+  virtual double promised_size(const ResponseScales& scales) = 0;
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
   /// Where an error in the velocity of a fast motion may stay in a slow one.
   enum class Mixing {

@@ -13,6 +13,7 @@ class MechanismSpace final : public ErrorSpace {
       : mechanism_(mechanism),
         equations_(mechanism),
         product_(mechanism.size()),
+        travel_(mechanism.size()),
         moved_(mechanism.start()),
         force_(mechanism.size()),
         constraint_(mechanism.constraint_count()) {}
@@ -22,13 +23,19 @@ class MechanismSpace final : public ErrorSpace {
     mechanism_.times_mass(x, product_);
     return product_;
   }
-  double displacement(const system::State&) override { return 0.0; }
+  double displacement(const system::State& state) override {
+    mechanism_.difference(mechanism_.start().q, state.q, travel_);
+    return norm(travel_);
+  }
   double least_size() override {
     return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
   }
 
   Mixing mixing() const override { return Mixing::always; }
   bool touches(const system::State&) const override { return false; }
+
+  /// Nothing: joints keep an acceleration from leading where it points.
+  double promised_size(const ResponseScales&) override { return 0.0; }
 
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
     const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
@@ -63,7 +70,7 @@ class MechanismSpace final : public ErrorSpace {
 
   const system::Mechanism& mechanism_;
   system::MechanismEquations equations_;
-  Vector product_;
+  Vector product_, travel_;
   system::State moved_;
   Vector force_, constraint_;
 };
