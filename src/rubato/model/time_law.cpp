@@ -67,10 +67,18 @@ double value(const TimeLaw& law, double t, Side side) {
     double operator()(const HarmonicLaw& harmonic) const {
       return harmonic.amplitude * std::cos(harmonic.angular_frequency * t + harmonic.phase);
     }
-    double operator()(const FormulaLaw& formula) const { return formula.formula(t); }
+    /// No time precedes the study: what a formula says at t = 0 held before.
+    bool has_no_left() const { return t == 0.0 && side == Side::left; }
+    double operator()(const FormulaLaw& formula) const {
+      if (has_no_left()) return formula.formula(t);
+      return side == Side::left ? formula.formula.from_left(t) : formula.formula.from_right(t);
+    }
     double operator()(const TableLaw& table) const { return value(table, t, side); }
     double operator()(const FormulaDerivative& derivative) const {
-      const numerics::TimeDerivatives all = derivative.formula(t);
+      const numerics::TimeFormula& formula = derivative.formula;
+      const numerics::TimeDerivatives all = has_no_left()        ? formula(t)
+                                            : side == Side::left ? formula.from_left(t)
+                                                                 : formula.from_right(t);
       return derivative.order == 0 ? all.value : derivative.order == 1 ? all.rate : all.second_rate;
     }
     double operator()(const SplineLaw& spline) const { return value_of(spline, t, side); }

@@ -1,3 +1,4 @@
+#include <rubato/model/time_kinks.hpp>
 #include <rubato/system/loads.hpp>
 
 #include <algorithm>
@@ -59,16 +60,16 @@ void Loads::evaluate_up_to(LoadTerm::Source last, double t, Vector& f, model::Si
 }
 
 std::vector<double> Loads::breakpoints(double from, double to) const {
-  std::vector<double> times;
-  const auto take = [&](const std::vector<double>& rows) {
-    std::copy_if(rows.begin(), rows.end(), std::back_inserter(times), [&](double t) { return t > from && t < to; });
-  };
+  std::vector<double> times, switches;
   for (const LoadTerm& term : terms_) {
-    if (const auto* table = std::get_if<model::TableLaw>(&term.law)) take(table->times);
-    if (const auto* spline = std::get_if<model::SplineLaw>(&term.law)) take(spline->times);
+    const model::Kinks kinks = model::kinks(term.law, from, to);
+    times.insert(times.end(), kinks.rows.begin(), kinks.rows.end());
+    switches.insert(switches.end(), kinks.switches.begin(), kinks.switches.end());
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::sort(switches.begin(), switches.end());
+  numerics::add_switches(switches, from, to, times);
   return times;
 }
 

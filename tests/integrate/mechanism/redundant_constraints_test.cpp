@@ -190,7 +190,7 @@ TEST(FourBars, PassTheirSingularPositionsWithStepsThatChooseThemselves) {
   system::MechanismEquations equations(mechanism);
   const double turn = turn_of_windows(2, 10.0);
   for (const double tolerance :
-       {7.828387513238776e-7, 4.20814403927705e-7}) {  // two of which some step would end in line to 1e-6 rad
+       {3.4439098602287738e-6, 2.6273423430917927e-6}) {  // two of which some step would end in line to 1e-6 rad
     system::State state = make_consistent(equations, mechanism.start()).state;
     const auto estimator = make_estimator(LocalError{tolerance}, std::get<GeneralizedAlpha>(method.formula),
                                           make_error_space(mechanism), state, 10.0);

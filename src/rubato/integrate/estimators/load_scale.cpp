@@ -1,5 +1,6 @@
 #include <rubato/integrate/estimators/load_scale.hpp>
 #include <rubato/integrate/estimators/mass_norm.hpp>
+#include <rubato/model/time_kinks.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
@@ -13,15 +14,13 @@ struct Sample {
   double t, value;
 };
 
-/// A law at equal distances and at the rows of its table, on both sides of a jump.
+/// A law at equal distances and at its kinks, on both sides of a jump.
 std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts) {
   std::vector<double> times;
   for (int i = 0; i <= parts; ++i) times.push_back(duration * i / parts);
-  const auto* table = std::get_if<model::TableLaw>(&law);
-  const auto* spline = std::get_if<model::SplineLaw>(&law);
-  if (table || spline)
-    for (const double t : table ? table->times : spline->times)
-      if (t > 0.0 && t < duration) times.push_back(t);
+  const model::Kinks kinks = model::kinks(law, 0.0, duration);
+  times.insert(times.end(), kinks.rows.begin(), kinks.rows.end());
+  times.insert(times.end(), kinks.switches.begin(), kinks.switches.end());
   std::sort(times.begin(), times.end());
   std::vector<Sample> samples;
   for (const double t : times)

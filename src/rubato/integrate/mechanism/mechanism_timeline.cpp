@@ -1,6 +1,7 @@
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+#include <rubato/model/time_kinks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +41,21 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
 
 std::vector<double> MechanismTimeline::breakpoints(double from, double to) const {
   std::vector<double> times = loads_.breakpoints(from, to);
-  for (const auto& drive : mechanism_.model().drives)
-    if (const auto* table = std::get_if<model::TableLaw>(&drive.law))
+  std::vector<double> switches;
+  for (const auto& drive : mechanism_.model().drives) {
+    if (const auto* table = std::get_if<model::TableLaw>(&drive.law)) {
       for (const double t : table->times)
         if (t > from && t < to) times.push_back(t);
+    } else {
+      const std::vector<double> found =
+          model::with_eighths(std::get<numerics::TimeFormula>(drive.law).switches(from, to));
+      switches.insert(switches.end(), found.begin(), found.end());
+    }
+  }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::sort(switches.begin(), switches.end());
+  numerics::add_switches(switches, from, to, times);
   return times;
 }
 
