@@ -120,6 +120,12 @@ TEST(AutomaticStep, SaysWhyARunEndedForWantOfSmallerSteps) {
   const Recorded result = run(testing::single_mass(), d);
   EXPECT_EQ(result.report.status, RunStatus::failed);
   EXPECT_NE(result.report.message.find("the error asked for a step below the smallest"), std::string::npos);
+  EXPECT_NE(result.report.message.find("the study sets smallest = 0.05 s: make it smaller"), std::string::npos)
+      << result.report.message;
+  d.automatic_step->largest = model::Quantity(0.05);
+  const Recorded cramped = run(testing::single_mass(), d);
+  EXPECT_NE(cramped.report.message.find("smallest and largest are both 0.05 s"), std::string::npos)
+      << cramped.report.message;
 }
 
 // A load that turns infinite: the step is halved until nothing is left to halve, and what was computed is kept.

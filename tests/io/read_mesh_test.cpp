@@ -38,8 +38,9 @@ std::string verdict_on(const std::string& nodes, const std::string& beams, const
   folder.write("beams.csv", beams);
   std::string message = verdict(study, folder.path());
   const std::string name = folder.path().string() + "/";
-  const std::size_t place = message.find(name);
-  return place == std::string::npos ? message : message.erase(place, name.size());
+  for (std::size_t place = message.find(name); place != std::string::npos; place = message.find(name))
+    message.erase(place, name.size());
+  return message;
 }
 
 TEST(Mesh, IsReadFromFilesAsFromTheStudy) {
@@ -92,6 +93,14 @@ TEST(MeshError, PointsAtWhatTheStudyLacks) {
   EXPECT_EQ(verdict_on(nodes_text, beams_text, edited("[beams]\n", "[beams]\nelements = 2\n", mesh_text)),
             "study.toml:4:1: error: [beams] has no key \"elements\"; known: section, material, mass, formulation, "
             "orientation, file");
+}
+
+TEST(MeshFault, RefusesABeamThatIsThereAlready) {
+  const std::string said =
+      "error: the beam from \"2\" to \"1\" is there already (line 2), and a second one would double "
+      "its stiffness; remove one, or if two beams are meant give one of them a name";
+  EXPECT_EQ(verdict_on(nodes_text, "first,second\n1,2\n2,3\n2,1\n"), "beams.csv:4: " + said);
+  EXPECT_EQ(verdict_on(nodes_text, "name,first,second\n,1,2\n,2,3\ntwin,2,1\n"), "accepted");
 }
 
 }  // namespace

@@ -174,9 +174,19 @@ TEST(DistributedForceFile, IsReadAndPointsAtItsFaults) {
       with("direction = [1.0, 0.0]", "direction = [1.0]"),
       "study.toml:44:6: error: the distributed force on \"column\": direction takes 2 numbers, as the positions of "
       "nodes do, got 1");
+  EXPECT_EQ(with("direction = [1.0, 0.0]", "direction = [0, 0.0]"),
+            "study.toml:44:6: error: the distributed force on \"column\": its direction has no length, and it would do "
+            "nothing; give the direction in which it pushes, such as [0, -1]");
   EXPECT_EQ(with("1e3 * t", "1e3 / t"),
             "study.toml:46:14: error: the distributed force on \"column\": \"1e3 / t\" is inf at t = 0; give a formula "
             "that is finite at all times");
+}
+
+TEST(NodeFault, RefusesTheNameOfTheGround) {
+  EXPECT_EQ(
+      portal_with("name = \"tip\"", "name = \"ground\""),
+      "study.toml:8:8: error: a node cannot be called \"ground\", which is the name of what does not move; give it "
+      "another name, and hold it by a [[support]]");
 }
 
 TEST(ReleaseFile, IsReadAndPointsAtItsFaults) {

@@ -79,6 +79,20 @@ TEST(TableError, GivesTheLineOfTheTable) {
             "load.csv:4: error: more than two rows at the time 1; two are a jump");
 }
 
+// The unit stands for itself alone: nothing is converted.
+TEST(TableError, RefusesUnitsThatAreReadAsOthers) {
+  const std::string rows = "0,0\n60,1\n";
+  for (const std::string header : {"time [s],force [N]", "\"time [s]\";\"moment [N*m]\"", "t,F [N m]", "time,force"})
+    EXPECT_EQ(verdict_on_table(header + "\n" + rows), "accepted") << header;
+  EXPECT_EQ(
+      verdict_on_table("time [ms],force [N]\n" + rows),
+      "load.csv:1: error: the header says that the time is in [ms], and it is read in [s]; convert the column, and "
+      "write [s]");
+  EXPECT_EQ(verdict_on_table("# a hammer\ntime [s],force [kN]\n" + rows),
+            "load.csv:2: error: the header says that the value is in [kN], and it is read in [N] or [N m]; convert the "
+            "column, and write [N]");
+}
+
 TEST(TableError, IsSaidOfEmptyShortAndBinaryTables) {
   EXPECT_EQ(verdict_on_table(""), "load.csv: error: the table has 0 row(s) of numbers; it needs two or more");
   EXPECT_EQ(verdict_on_table("t,f\n0,0\n"), "load.csv: error: the table has 1 row(s) of numbers; it needs two or more");

@@ -11,6 +11,8 @@
 namespace rubato::analysis {
 namespace {
 
+constexpr double least_step = 1e-12;  // of the duration, unless the study says
+
 double shortest_period(const system::LocallyNonlinear& system) {
   double fastest = 0.0;
   for (const auto& term : system.loads().terms())
@@ -66,6 +68,19 @@ double largest_step(const std::string& title, const model::StepDescription& desc
 
 }  // namespace
 
+std::string advice_on_smallest(const integrate::StepPlan& plan, double duration) {
+  if (!(plan.smallest > 1.01 * least_step * duration))
+    return "look for a load that grows without bound or jumps unannounced (a table says where it jumps), allow a "
+           "smaller step, or a larger tolerance";
+  if (!(plan.smallest < plan.largest))
+    return fmt::format(
+        "smallest and largest are both {} s, which leaves it no choice: leave smallest out, take a larger "
+        "tolerance, or the fixed step {} without a tolerance",
+        plan.smallest, plan.smallest);
+  return fmt::format("the study sets smallest = {} s: make it smaller or leave it out, or take a larger tolerance",
+                     plan.smallest);
+}
+
 double positive_or(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
                    const numerics::Parameters& parameters) {
   if (!quantity) return otherwise;
@@ -77,7 +92,7 @@ double positive_or(const std::optional<model::Quantity>& quantity, double otherw
 void plan_step_range(const std::string& title, const model::StepDescription& description,
                      const numerics::Parameters& parameters, double duration, double largest,
                      integrate::StepPlan& plan) {
-  plan.smallest = positive_or(description.smallest, 1e-12 * duration, title + "smallest", parameters);
+  plan.smallest = positive_or(description.smallest, least_step * duration, title + "smallest", parameters);
   plan.largest = largest;
   plan.first = positive_or(description.first, 0.0, title + "first", parameters);
   if (!(plan.smallest <= plan.largest))

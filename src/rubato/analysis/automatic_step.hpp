@@ -54,6 +54,9 @@ class StepRecorder final : public integrate::TryLog {
 /// "tolerance 0.001 (local_error, pi)"
 std::string summary(const AutomaticStep& step);
 
+/// What to do where the error asks for a step below the smallest: look at the study's own limits first.
+std::string advice_on_smallest(const integrate::StepPlan& plan, double duration);
+
 /// What the march counted, for the results.
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length);
 

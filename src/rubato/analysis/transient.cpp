@@ -104,7 +104,8 @@ std::string contact_name(Index contact, const system::LocallyNonlinear& system) 
                   : system.stops()[static_cast<std::size_t>(stop)].name;
 }
 
-std::string reason(const integrate::MarchReport& report, const system::LocallyNonlinear& system) {
+std::string reason(const integrate::MarchReport& report, const TransientPlan& plan,
+                   const system::LocallyNonlinear& system) {
   const auto coordinate = [&](Index i) {
     return i >= 0 ? fmt::format(" at coordinate \"{}\"", system.coordinates()[static_cast<std::size_t>(i)]) : "";
   };
@@ -128,9 +129,7 @@ std::string reason(const integrate::MarchReport& report, const system::LocallyNo
       break;
     case integrate::StepOutcome::too_small:
       what = "the error asked for a step below the smallest";
-      remedy =
-          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller "
-          "step, or a larger tolerance";
+      remedy = plan.automatic ? advice_on_smallest(plan.automatic->plan, plan.duration) : "take a smaller step";
       break;
     case integrate::StepOutcome::no_way_on:
     case integrate::StepOutcome::accepted:
@@ -182,7 +181,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   context.progress.end();
   if (report.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = reason(report, system);
+    run.message = reason(report, plan, system);
   } else if (report.end == integrate::MarchEnd::stopped && state.t < plan.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {:.6g} s of {} s", state.t, plan.duration);

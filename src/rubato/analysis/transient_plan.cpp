@@ -3,6 +3,7 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/stability.hpp>
+#include <rubato/numerics/formula_jump.hpp>
 
 #include <fmt/format.h>
 
@@ -38,6 +39,18 @@ void require_tables_to_reach(const system::LocallyNonlinear& system, double end,
                            "it, or say beyond = {}\"hold\" where it is used",
                            source.empty() ? "of a load" : "\"" + source + "\"", times.front(), times.back(), end,
                            table ? "\"zero\" or " : ""));
+  }
+}
+
+void require_continuous_supports(const system::LocallyNonlinear& system, double end, const Location& where) {
+  for (const auto& term : system.loads().terms()) {
+    const auto* motion = std::get_if<model::FormulaDerivative>(&term.law);
+    if (!motion || motion->order > 0) continue;
+    if (const auto jump = numerics::first_jump(motion->formula, 0, 0.0, end))
+      throw InvalidInput(where,
+                         fmt::format("the displacement \"{}\" jumps at t = {} s, and nothing moves from one place "
+                                     "to another at once; give it a time between",
+                                     motion->formula.text(), *jump));
   }
 }
 
@@ -215,6 +228,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);
+  require_continuous_supports(system, plan.duration, where);
   plan.observed = observed_or_all(description.observe, system, Supports::observed);
   return plan;
 }

@@ -191,7 +191,7 @@ DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& fol
     return drive;
   }
   auto inner = reader.optional_table("drive", fmt::format("{}: drive", reader.what()));
-  TableDescription table = read_table(inner->text("table"), folder, inner->where("table"));
+  TableDescription table = read_table(inner->text("table"), folder, inner->where("table"), {"rad", "m"});
   if (inner->optional_word("beyond", {"error", "hold"}) == "hold") table.beyond = TableDescription::Beyond::hold;
   inner->finish();
   drive.law = table;

@@ -9,7 +9,9 @@ namespace {
 
 using namespace model;
 
-TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& folder) {
+/// @param units  that the values of a table may have
+TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& folder,
+                            const std::vector<std::string>& units) {
   const bool has_amplitude = reader.has("amplitude"), has_expression = reader.has("expression"),
              has_table = reader.has("table");
   if (!has_amplitude && !has_expression && !has_table)
@@ -28,7 +30,7 @@ TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& fol
     return formula;
   }
   if (has_table) {
-    TableDescription table = read_table(reader.text("table"), folder, reader.where("table"));
+    TableDescription table = read_table(reader.text("table"), folder, reader.where("table"), units);
     const auto beyond = reader.optional_word("beyond", {"error", "zero", "hold"});
     if (beyond == "zero") table.beyond = TableDescription::Beyond::zero;
     if (beyond == "hold") table.beyond = TableDescription::Beyond::hold;
@@ -133,7 +135,7 @@ void read_displacement(TomlReader& reader, const std::filesystem::path& folder, 
                          fmt::format("{} needs a \"value\", which is held in static states and then released, or a "
                                      "law by which it moves: \"expression\" of t, \"table\" or \"amplitude\"",
                                      reader.what()));
-    model.prescribed.push_back({on, read_law(reader, folder), where});
+    model.prescribed.push_back({on, read_law(reader, folder, {"m", "rad"}), where});
   }
   reader.finish();
 }
@@ -143,8 +145,8 @@ std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const st
   if (!reader) return std::nullopt;
   BaseMotionDescription motion;
   motion.where = reader->where();
-  motion.law = read_law(*reader, folder);
   const auto of = reader->optional_word("of", {"acceleration", "velocity", "displacement"});
+  motion.law = read_law(*reader, folder, {of == "velocity" ? "m/s" : of == "displacement" ? "m" : "m/s2"});
   if (of == "velocity") motion.of = BaseMotionDescription::Of::velocity;
   if (of == "displacement") motion.of = BaseMotionDescription::Of::displacement;
   if (motion.of != BaseMotionDescription::Of::acceleration && !std::holds_alternative<HarmonicDescription>(motion.law))
@@ -219,7 +221,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
       reader.finish();
       continue;
     }
-    force.law = read_law(reader, folder);
+    force.law = read_law(reader, folder, {"N", "N m"});
     force.follows = reader.optional_bool("following").value_or(false);
     if (reader.has("following")) force.follows_where = reader.where("following");
     force.at = reader.optional_quantities("at").value_or(std::vector<Quantity>{});
@@ -236,7 +238,7 @@ ModelDescription read_model(TomlReader& root, const std::filesystem::path& folde
     force.on = reader.name("on", &force.where);
     reader.rename(fmt::format("the distributed force on \"{}\"", force.on));
     force.direction = reader.optional_quantities("direction").value_or(std::vector<Quantity>{});
-    force.law = read_law(reader, folder);
+    force.law = read_law(reader, folder, {"N/m"});
     reader.finish();
     model.distributed_forces.push_back(std::move(force));
   }

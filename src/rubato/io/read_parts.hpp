@@ -47,8 +47,10 @@ std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReade
 model::CaseSweepDescription read_cases(const std::string& file, const std::filesystem::path& folder,
                                        const Location& where);
 
-/// A CSV file of two columns, time and value; a first line that is no number is a header; `#` begins a comment.
-model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where);
+/// A CSV file of two columns, time and value; a first line that is no number is a header; `#` begins a comment. Units
+/// in square brackets of the header must be [s] and one of `units`.
+model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
+                                   const std::vector<std::string>& units);
 
 /// A Matrix Market file: coordinate or array format, real or integer, general or symmetric; symmetric in value.
 model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,

@@ -1,6 +1,7 @@
 #include <rubato/io/read_parts.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -29,10 +30,38 @@ bool begins_like_a_number(std::string_view line) {
   return std::string_view("0123456789+-.").find(line.front()) != std::string_view::npos;
 }
 
+/// "N*m", "N·m" and "Nm" alike; m/s^2 and m/s² as m/s2.
+std::string plain_unit(std::string_view unit) {
+  std::string plain;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (unit.substr(i, 2) == "\xc2\xb7") {
+      ++i;
+    } else if (unit.substr(i, 2) == "\xc2\xb2") {
+      plain += '2';
+      ++i;
+    } else if (std::string_view(" *.^").find(unit[i]) == std::string_view::npos) {
+      plain += unit[i];
+    }
+  }
+  return plain;
+}
+
+void require_unit(std::string_view head, const char* column, const std::vector<std::string>& units,
+                  const Location& here) {
+  const auto open = head.find('['), close = head.find(']', open == std::string_view::npos ? 0 : open);
+  if (open == std::string_view::npos || close == std::string_view::npos) return;
+  const std::string_view given = head.substr(open + 1, close - open - 1);
+  for (const std::string& unit : units)
+    if (plain_unit(given) == plain_unit(unit)) return;
+  throw InvalidInput(here, fmt::format("the header says that the {} is in [{}], and it is read in [{}]; convert the "
+                                       "column, and write [{}]",
+                                       column, given, fmt::join(units, "] or ["), units.front()));
+}
+
 }  // namespace
 
-model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder,
-                                   const Location& where) {
+model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
+                                   const std::vector<std::string>& units) {
   std::string text = read_text(folder / file, file, where, largest_table, "the table");
   const std::string place = file_in(folder, file);
   refuse_binary(text, place, "a table is a text of two columns, time and value");
@@ -55,7 +84,11 @@ model::TableDescription read_table(const std::string& file, const std::filesyste
                          to_number(line.substr(separator + 1), value);
     const bool is_header = header_allowed && !is_pair && !begins_like_a_number(line);
     header_allowed = false;
-    if (is_header) continue;
+    if (is_header) {
+      require_unit(line.substr(0, separator), "time", {"s"}, here);
+      if (separator != std::string_view::npos) require_unit(line.substr(separator + 1), "value", units, here);
+      continue;
+    }
     if (!is_pair)
       throw InvalidInput(here, fmt::format("a row must be two numbers, time and value, with a comma between them; got "
                                            "\"{}\"",

@@ -325,6 +325,14 @@ class Builder {
     DistributedForce force{found->first, found->count, Axis::Zero(), law(description.law, part)};
     for (std::size_t i = 0; i < wanted; ++i)
       force.direction[static_cast<Index>(i)] = number(description.direction[i], part + ": direction");
+    const bool is_written = std::all_of(description.direction.begin(), description.direction.end(),
+                                        [](const Quantity& quantity) { return quantity.expression.empty(); });
+    // Parameters may turn a force off.
+    if (is_written && force.direction.isZero(0.0))
+      throw InvalidInput(description.where,
+                         fmt::format("{}: its direction has no length, and it would do nothing; give the direction in "
+                                     "which it pushes, such as {}",
+                                     part, wanted == 2 ? "[0, -1]" : "[0, 0, -1]"));
     model_.distributed_forces.push_back(std::move(force));
   }
 

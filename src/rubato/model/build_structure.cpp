@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <unordered_map>
+#include <utility>
 
 namespace rubato::model {
 namespace {
@@ -76,6 +78,10 @@ class StructureBuilder {
       Axis position = Axis::Zero();
       for (std::size_t i = 0; i < given; ++i)
         position[static_cast<Index>(i)] = number(node.position[i], fmt::format("node \"{}\": position", node.name));
+      if (node.name == "ground")
+        throw InvalidInput(node.where,
+                           "a node cannot be called \"ground\", which is the name of what does not move; "
+                           "give it another name, and hold it by a [[support]]");
       add_node(node.name, node.where, position);
     }
   }
@@ -89,6 +95,21 @@ class StructureBuilder {
     if (line.name.empty()) return;
     lines_.add(line.name, line.where, 0);
     built_.lines.push_back({line.name, built_.structure.elements.size(), count});
+  }
+
+  /// Two lines of a kind between the same nodes double their stiffness: who means it names one.
+  void refuse_twin(const LineDescription& line, const char* kind, const std::array<Index, 2>& ends) {
+    if (!line.name.empty()) return;
+    const auto [low, high] = std::minmax(ends[0], ends[1]);
+    const auto [twin, is_new] = unnamed_[kind].emplace(std::pair{low, high}, &line.where);
+    if (is_new) return;
+    const Location& first = *twin->second;
+    const std::string place = first.line <= 0                 ? ""
+                              : first.file == line.where.file ? fmt::format(" (line {})", first.line)
+                                                              : fmt::format(" ({}:{})", first.file, first.line);
+    throw InvalidInput(line.where, fmt::format("{0} is there already{1}, and a second one would double its stiffness; "
+                                               "remove one, or if two {2}s are meant give one of them a name",
+                                               part_of(line, kind), place, kind));
   }
 
   /// The ends of a line, which must be two nodes apart.
@@ -134,6 +155,7 @@ class StructureBuilder {
     add_name(beam, static_cast<std::size_t>(std::max(beam.elements, 1)));
     const std::string part = part_of(beam, "beam");
     const std::array<Index, 2> ends = ends_of(beam, part);
+    refuse_twin(beam, "beam", ends);
     Section section{};
     LineProperties p = properties_of(beam, part, section);
     if (section.inertia_z == 0.0)
@@ -314,6 +336,7 @@ class StructureBuilder {
     add_name(truss, 1);
     const std::string part = part_of(truss, "truss");
     const std::array<Index, 2> ends = ends_of(truss, part);
+    refuse_twin(truss, "truss", ends);
     Section unused{};
     LineProperties p = properties_of(truss, part, unused);
     p.kind = LineProperties::Kind::truss;
@@ -395,6 +418,8 @@ class StructureBuilder {
   ByName<Material> materials_{"material"};
   ByName<Section> sections_{"section"};
   ByName<int> lines_{"element"};  // beams and trusses that have a name
+  // Where the others of each kind were given, by the nodes that they join.
+  std::map<std::string, std::map<std::pair<Index, Index>, const Location*>> unnamed_;
   std::vector<NodeState> states_;
 };
 
