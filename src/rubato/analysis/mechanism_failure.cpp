@@ -94,8 +94,9 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
     case integrate::StepOutcome::accepted:
       break;
   }
-  if (report.step.outcome == integrate::StepOutcome::not_converged ||
-      report.step.outcome == integrate::StepOutcome::too_small) {
+  using integrate::StepOutcome;
+  const StepOutcome outcome = report.step.outcome;
+  if (outcome == StepOutcome::not_converged || outcome == StepOutcome::too_small || outcome == StepOutcome::singular) {
     const std::vector<std::string> joints = singular_joints(mechanism, state);
     if (!joints.empty()) {
       what +=

@@ -161,7 +161,9 @@ class Marcher {
     if (tried.outcome == StepOutcome::accepted) return true;
     note(length.step, std::numeric_limits<double>::quiet_NaN(), outcome_of(tried.outcome));
     ++report_.failed;
-    shorten(0.5 * length.step, tried);
+    // What is singular at one time only must not be met again by the second half.
+    constexpr double half = 0.5, less_than_half = 0.4;
+    shorten((tried.outcome == StepOutcome::singular ? less_than_half : half) * length.step, tried);
     return false;
   }
 

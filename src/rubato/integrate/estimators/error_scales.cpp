@@ -11,7 +11,7 @@ ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
       duration_(duration),
       derivative_(derivative),
       is_damped_(space.is_damped()),
-      mixing_(space.mixing()) {}
+      has_stops_(space.has_stops()) {}
 
 void ErrorScales::start(const system::State& state) {
   y_ = rate_ = 0.0;
@@ -52,7 +52,6 @@ double ErrorScales::relative(double dq_squared, double dv_squared, const system:
     omega = scales.frequency_of(derivative_);
     if (!(size > 0.0 && omega > 0.0)) return 0.0;
   }
-  if (mixing_ == ErrorSpace::Mixing::always) omega = std::sqrt(omega * std::min(omega, speed_frequency()));
   if (is_contact) omega = std::min(omega, speed_frequency());
   return std::sqrt(dq_squared + dv_squared / (omega * omega)) / size;
 }
@@ -69,7 +68,7 @@ void ErrorScales::accept(const Vector& shape, double shape_squared, double y, do
   constexpr long stride = 4;
   if (steps_++ % stride != 0) return;
   size_ = std::max(size_, space_.displacement(to));
-  if (mixing_ != ErrorSpace::Mixing::never && !space_.touches(to)) {
+  if (has_stops_ && !space_.touches(to)) {
     const Vector& momentum = space_.times_mass(to.v);
     const double speed_squared = momentum.dot(to.v), power = momentum.dot(to.auxiliary_acceleration);
     speed_ += h * speed_squared;

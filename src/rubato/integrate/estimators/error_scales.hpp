@@ -12,13 +12,12 @@ namespace rubato::integrate {
 /// without damping, the time over which an error is forgotten with it. What costs products with the matrices is looked
 /// at on every fourth step: it changes over periods.
 ///
-/// Where motions mix (ErrorSpace::Mixing) an error of velocity lives as long as the speed stays as it is,
+/// A contact is passed in one go, and an error of its velocity stays in what follows as long as the speed stays as it
+/// is: where it is lower,
 ///
 ///   Omega^2 = <(d|v|_M/dt)^2>/<|v|_M^2>
 ///
-/// over all of the past without contacts: what swings forgets it within a quarter of its period, what turns evenly
-/// never. In a contact, which is passed in one go, Omega stands for omega where it is lower; in mechanisms sqrt(omega
-/// Omega), as if what successive swings add were independent.
+/// over all of the past without contacts stands for omega there.
 class ErrorScales {
  public:
   /// @param derivative  of q that the y of accept() is: 3 or 1
@@ -50,7 +49,7 @@ class ErrorScales {
   double duration_;
   int derivative_;
   bool is_damped_;
-  ErrorSpace::Mixing mixing_;
+  bool has_stops_;
   double size_ = 0.0, third_at_start_ = 0.0;
   double y_ = 0.0, rate_ = 0.0;            // averages of |y|^2 and |y'|^2
   double damping_ = -1.0;                  // r [1/s], averaged; negative: unknown

@@ -26,7 +26,7 @@ class StructureSpace final : public ErrorSpace {
   double promised_size(const ResponseScales& scales) override {
     return scales.size(promised() > 0.0 ? promised() : HUGE_VAL);
   }
-  Mixing mixing() const override { return system_.stop_count() > 0 ? Mixing::closed : Mixing::never; }
+  bool has_stops() const override { return system_.stop_count() > 0; }
   bool touches(const system::State& state) const override {
     return (state.slider_force.tail(system_.stop_count()).array() > 0.0).any();
   }

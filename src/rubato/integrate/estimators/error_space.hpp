@@ -23,13 +23,7 @@ class ErrorSpace {
   /// Size that a state promises [m sqrt(kg)]; 0 where only what has moved counts.
   virtual double promised_size(const ResponseScales& scales) = 0;
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
-  /// Where an error in the velocity of a fast motion may stay in a slow one.
-  enum class Mixing {
-    never,   ///< linear motions
-    always,  ///< as in a crank that turns
-    closed,  ///< while a stop is closed
-  };
-  virtual Mixing mixing() const = 0;
+  virtual bool has_stops() const = 0;
   /// Whether a stop is closed.
   virtual bool touches(const system::State& state) const = 0;
   virtual bool is_damped() const = 0;

@@ -31,7 +31,7 @@ class MechanismSpace final : public ErrorSpace {
     return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
   }
 
-  Mixing mixing() const override { return Mixing::always; }
+  bool has_stops() const override { return false; }
   bool touches(const system::State&) const override { return false; }
 
   /// Nothing: joints keep an acceleration from leading where it points.

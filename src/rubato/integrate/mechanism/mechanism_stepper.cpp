@@ -78,8 +78,9 @@ class MechanismStepper final : public Stepper {
       const bool is_done =
           iteration == 0 ? size <= round_off * tolerance_ : ratio < 1.0 && size * ratio / (1.0 - ratio) <= tolerance_;
       if (is_done) {
-        const bool is_held = !plan_.avoids_singular_ends || equations_.hardly_held_rows() <= usual_;
-        return is_held ? finish(from, h, to) : fault(StepOutcome::not_converged);
+        // Where rows repeat each other always, those that do so at one time only are not told apart from them.
+        const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.hardly_held_rows() == 0;
+        return is_held ? finish(from, h, to) : fault(StepOutcome::singular);
       }
       if (iteration > 0) {
         if (is_fresh && ratio > 2.0) return fault(StepOutcome::not_converged);
@@ -136,7 +137,8 @@ class MechanismStepper final : public Stepper {
     usual_for_.stuck_at = now.stuck_at;
     equations_.go_to(usual_for_, model::Side::left);
     equations_.linearise({}, usual_for_.multiplier, force_, constraint_);
-    usual_ = equations_.factorise() ? equations_.hardly_held_rows() : 0;
+    constexpr double left = 1e-6;  // the configuration of the start may be given to a few digits
+    usual_ = equations_.factorise() ? static_cast<int>(equations_.redundant_rows(left).size()) : 0;
   }
 
   void project(system::State& to) {

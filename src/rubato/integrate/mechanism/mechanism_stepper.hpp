@@ -19,7 +19,7 @@ struct NewtonPlan {
   bool projects_velocities = false;
   /// Ends no step in a configuration in which more rows repeat each other than at the start (bars in line): positions
   /// are hardly held there, by the square of the angle over the share E, and accelerations of a step take what is left.
-  /// Such a step does not converge; one of another length ends beyond.
+  /// Such a step is singular; one of another length ends before it or beyond.
   bool avoids_singular_ends = false;
 };
 
