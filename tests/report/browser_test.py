@@ -210,6 +210,25 @@ class Report(unittest.TestCase):
             [...tools.querySelectorAll('button')].find((button) => button.textContent === arguments[1]).click()""",
                             number, text)
 
+    def test_steps_stand_on_logarithmic_axes_with_their_events_and_their_distribution(self):
+        axis = "return document.querySelector('#figure-{} .plot')._fullLayout.{}.type"
+        number = self.figure("response", "Length of the steps")
+        self.assertEqual(self.legend(number), ["Event", "Accepted", "Error too large", "Tried for an event"])
+        self.assertEqual(self.browser.script(axis.format(number, "yaxis")), "log")
+        events = self.browser.script(f"return document.querySelector('#figure-{number} .plot').data[0].x.length")
+        self.assertEqual(events, 3 * 10, "a line for each of the ten events")
+        number = self.figure("response", "Error of the steps")
+        self.assertEqual(self.legend(number), ["Event", "Accepted", "Error too large", "Tolerance"])
+        self.assertEqual(self.browser.script(axis.format(number, "yaxis")), "log")
+        number = self.figure("response", "How often a step of which length")
+        self.assertEqual(self.browser.script(axis.format(number, "xaxis")), "log")
+        steps = self.browser.script(f"return document.querySelector('#figure-{number} .plot').data[0].y.reduce((a, b) => a + b)")
+        self.assertEqual(steps, 200)
+
+    def test_the_summary_fits_its_column(self):
+        self.assertTrue(self.browser.script("const table = document.querySelector('#table-1 .scroll');"
+                                            "return table.scrollWidth <= table.clientWidth"))
+
     def test_a_sweep_shows_a_curve_a_preload_both_limits_and_what_did_not_converge(self):
         number = self.figure("preloads", "Responses in the steady state")
         self.assertEqual(self.legend(number), [

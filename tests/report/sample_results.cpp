@@ -95,6 +95,26 @@ std::string repeated(double value, std::size_t times) {
   return out;
 }
 
+/// Tries of steps between 1 ms and 0.1 s; every tenth is rejected, every twentieth ends at an event after two tries.
+void add_steps(results::Sink& sink, const std::string& analysis) {
+  results::TableLayout layout{analysis, "steps", "time", {}, {}};
+  layout.attributes = {{"type", "steps"}, {"tolerance", "0.001"}};
+  for (const char* name : {"time", "step"}) layout.blocks.push_back(column(name, "s"));
+  for (const char* name : {"error", "accepted", "reason"}) layout.blocks.push_back(column(name, "1"));
+  layout.blocks.back().categories = {"accepted", "error_too_large", "not_converged", "not_finite", "singular", "event"};
+  Rows rows;
+  double t = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const double step = std::pow(10.0, -2.0 + std::sin(0.05 * i));
+    if (i % 10 == 5) rows.push_back({t, 2.0 * step, 3e-3, 0.0, 1.0});
+    if (i % 20 == 10)
+      for (const double share : {1.6, 1.2}) rows.push_back({t, share * step, std::nan(""), 0.0, 5.0});
+    rows.push_back({t, step, 5e-4 + 4e-4 * std::sin(i), 1.0, 0.0});
+    t += step;
+  }
+  add_table(sink, layout, rows);
+}
+
 void add_transient(results::Sink& sink, const std::string& name, const SmallModel& model, double h, int steps,
                    const std::string& status, const std::string& message) {
   results::TableLayout layout{name, "", "time", {column("time", "s")}, {}};
@@ -118,6 +138,7 @@ void add_transient(results::Sink& sink, const std::string& name, const SmallMode
   }
   add_table(sink, layout, rows);
   add_table(sink, energy_layout(name), energies);
+  if (status == "done") add_steps(sink, name);
   sink.conclude(name, status, message, {{"steps", std::to_string(steps)}});
 }
 

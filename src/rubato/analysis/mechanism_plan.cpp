@@ -4,6 +4,7 @@
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/numerics/formula_jump.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -292,6 +293,13 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                                    "it, or say beyond = \"zero\" or \"hold\" where it is used",
                                    table->source, table->times.front(), table->times.back(), transient.duration));
   }
+  for (const auto& drive : mechanism.model().drives)
+    if (const auto* formula = std::get_if<numerics::TimeFormula>(&drive.law))
+      if (const auto jump = numerics::first_jump(*formula, 0, 0.0, transient.duration))
+        throw InvalidInput(where,
+                           fmt::format("joint \"{}\": the drive \"{}\" jumps at t = {} s, and nothing moves from "
+                                       "one place to another at once; give it a time between",
+                                       drive.name, formula->text(), *jump));
   plan_output(transient, description.output, parameters, where);
   transient.observed = observed_or_all(description.observe, mechanism);
   return plan;
