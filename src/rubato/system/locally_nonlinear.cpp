@@ -1,3 +1,4 @@
+#include <rubato/core/error.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -87,7 +88,8 @@ struct EquilibriumAcceleration::Workspace {
       inverse_mass = Vector(system.mass().diagonal()).cwiseInverse();
     } else {
       factor.analyse(system.mass());
-      factor.factorise(system.mass());  // positive definite: the system was assembled with that mass
+      if (!factor.factorise(system.mass()))
+        throw InvalidInput("the mass matrix is not positive definite: some motion of the coordinates has no mass");
     }
   }
   const LocallyNonlinear& system;
