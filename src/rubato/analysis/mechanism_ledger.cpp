@@ -26,6 +26,7 @@ void MechanismLedger::start(const system::State& state) {
   sums_ = {};
   last_impulsive_work_ = 0.0;
   last_kinetic_ = kinetic(state);
+  last_phase_ = state.phase;
   sums_.start = last_kinetic_ + strain(state);
 }
 
@@ -62,17 +63,27 @@ MechanismLedger::Booking MechanismLedger::booking(const system::State& before, c
 }
 
 void MechanismLedger::add_step(const system::State& before, const system::State& after, double impulsive_work) {
-  // A lock that engaged between the steps changed the velocities, or a drive that prescribes another.
   const double impulse = impulsive_work - last_impulsive_work_;
-  last_impulsive_work_ = impulsive_work;
-  sums_.lock_dissipated += last_kinetic_ - kinetic(before) + impulse;
+  sums_.lock_dissipated += taken_before(before) + impulse;
   sums_.drive_work += impulse;
+  last_impulsive_work_ = impulsive_work;
   const Booking booked = booking(before, after);
   sums_.damper_dissipated += booked.damper;
   sums_.friction_dissipated += booked.friction;
   sums_.load_work += booked.load;
   sums_.drive_work += booked.drive;
   last_kinetic_ = kinetic(after);
+  last_phase_ = after.phase;
+}
+
+double MechanismLedger::taken_before(const system::State& state) {
+  double taken = last_kinetic_ - kinetic(state);
+  if (state.phase == last_phase_) return taken;
+  // A damped stop lets go while its spring still presses: it relaxes against its damper, which takes what it holds.
+  balanced_ = state;
+  balanced_.phase = last_phase_;
+  taken += strain(balanced_) - strain(state);
+  return taken;
 }
 
 MechanismEnergy MechanismLedger::at(const system::State& before, const system::State& now, double impulsive_work) {
@@ -82,7 +93,7 @@ MechanismEnergy MechanismLedger::at(const system::State& before, const system::S
   energy.strain = strain(now);
   if (&before != &now) {
     const double impulse = impulsive_work - last_impulsive_work_;
-    energy.lock_dissipated += last_kinetic_ - kinetic(before) + impulse;
+    energy.lock_dissipated += taken_before(before) + impulse;
     energy.drive_work += impulse;
   }
   energy.damper_dissipated += part.damper;

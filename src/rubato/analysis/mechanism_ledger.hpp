@@ -9,7 +9,7 @@ struct MechanismEnergy {
   double kinetic = 0.0;              ///< v^T M v / 2
   double strain = 0.0;               ///< of beams, springs and elastic locks
   double damper_dissipated = 0.0;    ///< by dampers, those of locks included
-  double lock_dissipated = 0.0;      ///< kinetic energy that rigid locks took as they engaged
+  double lock_dissipated = 0.0;      ///< what rigid locks took as they engaged, and damped stops held as they let go
   double friction_dissipated = 0.0;  ///< by the friction of joints
   double load_work = 0.0;            ///< of forces, gravity, and laws of joints
   double drive_work = 0.0;           ///< of the drives that prescribe motions
@@ -29,7 +29,8 @@ struct MechanismEnergy {
 ///   drives               (F0 + F1)/2 times the change of what they prescribe, F minus the multiplier of
 ///                         equilibrium at either end (that of a step is of first order where velocities are projected)
 ///
-/// and between steps what the projection of the velocities took, and drives gave to it.
+/// and between steps what the projection of the velocities took, and drives gave to it, and what the spring of a damped
+/// stop still held as it let go.
 class MechanismLedger {
  public:
   explicit MechanismLedger(const system::Mechanism& mechanism);
@@ -44,6 +45,8 @@ class MechanismLedger {
   struct Booking {
     double damper = 0.0, load = 0.0, drive = 0.0, friction = 0.0;
   };
+  /// What locks took between the step before and this state, without what drives gave [J].
+  double taken_before(const system::State& state);
   Booking booking(const system::State& before, const system::State& after);
   double kinetic(const system::State& state);
   double strain(const system::State& state);
@@ -54,6 +57,7 @@ class MechanismLedger {
   system::State balanced_;
   MechanismEnergy sums_;
   double last_kinetic_ = 0.0, last_impulsive_work_ = 0.0;
+  std::vector<int> last_phase_;
 };
 
 }  // namespace rubato::analysis

@@ -40,18 +40,19 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
   frictions_.add(layout);
   rows_ = sink.open(layout);
   if (!plan.transient.energy) return;
-  energy_rows_ = sink.open({name,
-                            "energy",
-                            "time",
-                            {time, scalar("kinetic", "J", "kinetic energy"),
-                             scalar("strain", "J", "strain energy of beams, springs and elastic locks"),
-                             scalar("damper_dissipated", "J", "dissipated by the dampers since the start"),
-                             scalar("lock_dissipated", "J", "kinetic energy that rigid locks took since the start"),
-                             scalar("friction_dissipated", "J", "dissipated by the friction of joints since the start"),
-                             scalar("load_work", "J", "work of loads, gravity and laws of joints since the start"),
-                             scalar("drive_work", "J", "work of the drives that prescribe motions since the start"),
-                             scalar("residue", "J", "what the method itself made (+) or lost (-)")},
-                            {{"type", "energy"}}});
+  energy_rows_ =
+      sink.open({name,
+                 "energy",
+                 "time",
+                 {time, scalar("kinetic", "J", "kinetic energy"),
+                  scalar("strain", "J", "strain energy of beams, springs and elastic locks"),
+                  scalar("damper_dissipated", "J", "dissipated by the dampers since the start"),
+                  scalar("lock_dissipated", "J", "energy that locks took as they engaged and let go since the start"),
+                  scalar("friction_dissipated", "J", "dissipated by the friction of joints since the start"),
+                  scalar("load_work", "J", "work of loads, gravity and laws of joints since the start"),
+                  scalar("drive_work", "J", "work of the drives that prescribe motions since the start"),
+                  scalar("residue", "J", "what the method itself made (+) or lost (-)")},
+                 {{"type", "energy"}}});
 }
 
 void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
@@ -96,7 +97,7 @@ void write_events(const std::string& name, const std::vector<integrate::LockEven
                                {scalar("time", "s", "when it happened"),
                                 {"joint", "1", "whose lock or friction", "", {}, joints},
                                 {"event", "1", "what it did", "", {}, {"released", "engaged", "slips", "sticks"}},
-                                scalar("energy_lost", "J", "kinetic energy that the lock took")},
+                                scalar("energy_lost", "J", "energy that the lock took")},
                                {{"type", "events"}}});
   for (const auto& event : events) {
     const bool is_friction = event.friction >= 0;

@@ -7,6 +7,7 @@
 namespace rubato::integrate {
 namespace {
 
+using model::friction_free;
 using model::friction_slides_down;
 using model::friction_slides_up;
 using model::friction_sticks;
@@ -26,13 +27,29 @@ double departure(system::MechanismEquations& equations, const system::State& sta
   return model::sliding_direction(state.rubbing[friction]) * (after - equations.friction_rate(friction)) / short_time;
 }
 
+/// Whether a rigid lock of the same joint holds what rubs: what either of them carries nothing tells.
+bool is_locked(const model::Mechanism& model, const system::State& state, std::size_t friction) {
+  for (std::size_t lock = 0; lock < model.locks.size(); ++lock)
+    if (state.phase[lock] == model::lock_engaged && model.locks[lock].is_rigid() &&
+        model.locks[lock].name == model.frictions[friction].name)
+      return true;
+  return false;
+}
+
 }  // namespace
 
-bool settle_friction(system::MechanismEquations& equations, system::State& state, const std::vector<char>& candidates) {
+bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates) {
   const auto& mechanism = equations.mechanism();
   const auto& frictions = mechanism.model().frictions;
   std::vector<char> is_open(frictions.size(), 0);  // may stick or slide as it turns out
   for (std::size_t i = 0; i < frictions.size(); ++i) {
+    const bool has_been_free = state.rubbing[i] == friction_free;
+    if (is_locked(mechanism.model(), state, i)) {
+      state.rubbing[i] = friction_free;
+      candidates[i] = 0;
+      continue;
+    }
+    candidates[i] = candidates[i] || has_been_free;
     if (candidates[i]) {
       state.rubbing[i] = friction_sticks;
       state.stuck_at[static_cast<Index>(i)] = frictions[i].s.value(state.q.data());

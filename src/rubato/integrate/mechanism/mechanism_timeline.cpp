@@ -138,6 +138,7 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
 }
 
 double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
+    if (old[i] == model::friction_free) continue;
   balanced_ = state;
   if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
   return equations_.friction_force(i, balanced_.multiplier);
@@ -173,7 +174,9 @@ bool MechanismTimeline::release(system::State& state) {
     if (!(guard_at(i, state).value < 0.0)) continue;
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
-    if (!find_acceleration(equations_, state, model::Side::right)) return false;
+    const std::vector<int> old = state.rubbing;
+    if (!settle_friction(equations_, state, std::vector<char>(old.size(), 0))) return false;
+    note_friction(old, state);
   }
   return true;
 }
@@ -265,3 +268,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
 }
 
 }  // namespace rubato::integrate
+    if (!engages && !lock.is_rigid() && lock.damping > 0.0) {
+      const double depth = lock.s.value(state.q.data()) - lock.at;
+      events_.back().energy_lost = 0.5 * lock.stiffness * depth * depth;
+    }

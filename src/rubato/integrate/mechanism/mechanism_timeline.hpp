@@ -14,7 +14,7 @@ struct LockEvent {
   double t = 0.0;
   int lock = -1;  ///< -1: it is a friction
   bool has_engaged = true;
-  double energy_lost = 0.0;  ///< kinetic energy that the projection of the velocities took away [J]
+  double energy_lost = 0.0;  ///< what the projection of the velocities took away, or its spring held as it let go [J]
   int friction = -1;
 };
 

@@ -11,7 +11,8 @@ namespace rubato::model {
 
 /// What the friction of a joint does now; kept in the state, changed by events only.
 enum FrictionPhase : int {
-  friction_free = 0,  ///< not known yet, or left out (static equilibrium, modes, the instant of an impact): no force
+  friction_free = 0,  ///< not known yet, or left out (static equilibrium, modes, the instant of an impact, while a
+                      ///< rigid lock holds the joint): no force
   friction_sticks = 1,
   friction_slides_up = 2,    ///< s grows
   friction_slides_down = 3,  ///< s shrinks
