@@ -261,7 +261,8 @@ model::ModelDescription portal(double height, double width) {
   model::ModelDescription description;
   model::StructureDescription& frame = description.structure;
   const double places[][2] = {{0.0, 0.0}, {0.0, height}, {width, height}, {width, 0.0}};
-  for (const auto& p : places) frame.nodes.push_back({std::to_string(frame.nodes.size() + 1), {p[0], p[1]}, {}});
+  for (const auto& p : places)
+    frame.nodes.push_back(testing::node_at(std::to_string(frame.nodes.size() + 1), p[0], p[1]));
   frame.materials = {{"steel", 2.1e11, 0.3, {}, 7850.0, {}}};
   frame.sections = {{"tube", 1e-3, {1e-6}, {}, {}, {}}};
   for (const auto& [first, second] : {std::pair{"1", "2"}, {"2", "3"}, {"4", "3"}}) {

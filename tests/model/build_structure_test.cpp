@@ -105,16 +105,14 @@ TEST(StructureFault, NamesASectionWithoutInertiaOrShear) {
 }
 
 TEST(StructureFault, NamesANodeThatNothingJoins) {
-  EXPECT_EQ(verdict_of_frame([](auto& frame) {
-              frame.nodes.push_back({"8", {5.0, 5.0}, {}});
-            }),
+  EXPECT_EQ(verdict_of_frame([](auto& frame) { frame.nodes.push_back(testing::node_at("8", 5.0, 5.0)); }),
             "node \"8\" is joined by nothing: no beam, truss or mass names it");
 }
 
 TEST(StructureFault, NamesAFreedomWithoutInertia) {
   EXPECT_EQ(
       verdict([](auto& description) {
-        description.structure.nodes.push_back({"8", {5.0, 5.0}, {}});
+        description.structure.nodes.push_back(testing::node_at("8", 5.0, 5.0));
         PointMassDescription mass;
         mass.node = "8";
         mass.mass = 2.0;

@@ -28,6 +28,10 @@ NodeDescription read_node(TomlReader& reader) {
   node.name = reader.name("name", &node.where);
   reader.rename(fmt::format("node \"{}\"", node.name));
   node.position = required_quantities(reader, "position");
+  node.velocity = reader.optional_quantities("velocity").value_or(std::vector<Quantity>{});
+  node.velocity_where = reader.where("velocity");
+  node.angular_velocity = optional_one_or_more(reader, "angular_velocity");
+  node.angular_velocity_where = reader.where("angular_velocity");
   reader.finish();
   return node;
 }

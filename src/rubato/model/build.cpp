@@ -118,6 +118,7 @@ class Builder {
                                        "coordinate",
                                        coordinate.name));
       model_.mass[place] = coordinate.mass;
+      model_.velocity[place] = coordinate.velocity;
       model_.is_rotation[static_cast<std::size_t>(place)] = coordinate.is_rotation;
       model_.coordinates.push_back(std::move(coordinate.name));
     }

@@ -112,7 +112,9 @@ void take_node(MechanismAssembly& assembly, const BuiltStructure& built, std::si
   assembly.extend(at);
   for (std::size_t axis = 0; axis < 6; ++axis) {
     if (!is_free(axis)) continue;
-    const double mass = built.coordinates[static_cast<std::size_t>(places[axis])].mass;
+    const NodeCoordinate& coordinate = built.coordinates[static_cast<std::size_t>(places[axis])];
+    mechanism.nodes[static_cast<std::size_t>(node)].velocity[axis] = coordinate.velocity;
+    const double mass = coordinate.mass;
     if (axis == 0) assembly.mass += mass;
     if (is_rotation(axis)) assembly.inertia += mass;
     if (!(mass > 0.0)) continue;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -41,7 +42,7 @@ class StructureBuilder {
  private:
   struct NodeState {
     std::array<bool, 6> exists{}, is_fixed{};
-    std::array<double, 6> mass{};
+    std::array<double, 6> mass{}, velocity{};
     Location where;
   };
 
@@ -60,6 +61,28 @@ class StructureBuilder {
     built_.structure.positions.push_back(position);
     states_.emplace_back();
     states_.back().where = where;
+  }
+
+  /// Velocities of a node at the start, by the axes that it has.
+  void take_velocity(const NodeDescription& node, NodeState& state) const {
+    const auto take = [&](const std::vector<Quantity>& values, const Location& where, const char* key,
+                          std::span<const std::size_t> axes) {
+      if (values.empty()) return;
+      const std::string what = fmt::format("node \"{}\": {}", node.name, key);
+      if (values.size() != axes.size())
+        throw InvalidInput(
+            where, fmt::format("{} takes {} number{} {}, got {}", what,
+                               axes.size() == 1   ? "one"
+                               : axes.size() == 2 ? "two"
+                                                  : "three",
+                               axes.size() == 1 ? "" : "s", in_plane() ? "in the plane" : "in space", values.size()));
+      for (std::size_t i = 0; i < axes.size(); ++i) state.velocity[axes[i]] = number(values[i], what);
+    };
+    static constexpr std::array<std::size_t, 6> axes{0, 1, 2, 3, 4, 5};
+    const std::size_t translations = in_plane() ? 2 : 3;
+    take(node.velocity, node.velocity_where, "velocity", std::span(axes).first(translations));
+    take(node.angular_velocity, node.angular_velocity_where, "angular_velocity",
+         in_plane() ? std::span(axes).last(1) : std::span(axes).last(3));
   }
 
   void take_nodes() {
@@ -83,6 +106,7 @@ class StructureBuilder {
                            "a node cannot be called \"ground\", which is the name of what does not move; "
                            "give it another name, and hold it by a [[support]]");
       add_node(node.name, node.where, position);
+      take_velocity(node, states_.back());
     }
   }
 
@@ -266,7 +290,7 @@ class StructureBuilder {
               const std::array<std::uint16_t, 2>& released) {
     if (beam.elements < 1)
       throw InvalidInput(beam.where, fmt::format("{}: elements must be at least 1, got {}", part, beam.elements));
-    const Index last = element.second;
+    const Index first = element.first, last = element.second;
     const Axis from = built_.structure.positions[static_cast<std::size_t>(element.first)];
     const Axis to = built_.structure.positions[static_cast<std::size_t>(last)];
     const std::string name = beam.name.empty() ? beam.nodes[0] + "-" + beam.nodes[1] : beam.name;
@@ -285,6 +309,9 @@ class StructureBuilder {
                                                    part, between));
       add_node(between, beam.where, (1.0 - share) * from + share * to);
       element.second = static_cast<Index>(states_.size()) - 1;
+      for (std::size_t axis = 0; axis < 6; ++axis)
+        states_.back().velocity[axis] = (1.0 - share) * states_[static_cast<std::size_t>(first)].velocity[axis] +
+                                        share * states_[static_cast<std::size_t>(last)].velocity[axis];
       element.properties = properties_at(i == 1, false);
       add_element(element, true);
       element.first = element.second;
@@ -389,12 +416,28 @@ class StructureBuilder {
     }
   }
 
+  /// A velocity along what a support holds, or of a rotation that nothing gives an inertia.
+  void refuse_lost_velocity(std::size_t node) const {
+    if (node >= description_.nodes.size()) return;  // within a beam
+    const NodeState& state = states_[node];
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      if (state.velocity[axis] == 0.0 || (state.exists[axis] && !state.is_fixed[axis])) continue;
+      const NodeDescription& given = description_.nodes[node];
+      throw InvalidInput(
+          is_rotation(axis) ? given.angular_velocity_where : given.velocity_where,
+          fmt::format("node \"{}\" starts with a velocity in {}, {}", given.name, axis_names[axis],
+                      state.is_fixed[axis] ? "which a support holds; leave it out"
+                                           : "where nothing gives it an inertia; leave it out, or add a [[mass]]"));
+    }
+  }
+
   void number_coordinates(Index offset) {
     for (std::size_t node = 0; node < states_.size(); ++node) {
       const NodeState& state = states_[node];
       if (std::none_of(state.exists.begin(), state.exists.end(), [](bool e) { return e; }))
         throw InvalidInput(state.where, fmt::format("node \"{}\" is joined by nothing: no beam, truss or mass names it",
                                                     built_.structure.names[node]));
+      refuse_lost_velocity(node);
       std::array<Index, 6> places{};
       places.fill(ground);
       for (std::size_t axis = 0; axis < 6; ++axis) {
@@ -405,7 +448,7 @@ class StructureBuilder {
           continue;
         }
         places[axis] = offset + static_cast<Index>(built_.coordinates.size());
-        built_.coordinates.push_back({std::move(name), is_rotation(axis), state.mass[axis]});
+        built_.coordinates.push_back({std::move(name), is_rotation(axis), state.mass[axis], state.velocity[axis]});
       }
       built_.structure.places.push_back(places);
     }

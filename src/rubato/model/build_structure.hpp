@@ -14,7 +14,8 @@ namespace rubato::model {
 struct NodeCoordinate {
   std::string name;  ///< "7.rz"
   bool is_rotation = false;
-  double mass = 0.0;  ///< point masses [kg], or inertias [kg m2]
+  double mass = 0.0;      ///< point masses [kg], or inertias [kg m2]
+  double velocity = 0.0;  ///< at the start [m/s] or [rad/s]
 };
 
 /// A beam or truss that has a name, and its elements.
@@ -31,7 +32,8 @@ struct BuiltStructure {
 };
 
 /// Evaluates and checks nodes, elements, masses and supports. A degree of freedom exists where something gives it an
-/// inertia: beams all of a node's, trusses and masses the translations, inertias the rotations. Throws InvalidInput.
+/// inertia: beams all of a node's, trusses and masses the translations, inertias the rotations. Nodes within a beam
+/// start with the velocities between those of its ends, as a beam that moves rigidly does. Throws InvalidInput.
 /// @param offset  coordinates before those of the nodes
 BuiltStructure build_structure(const StructureDescription& description, const numerics::Parameters& parameters,
                                Index offset);

@@ -12,8 +12,10 @@ namespace rubato::model {
 
 struct NodeDescription {
   std::string name;
-  std::vector<Quantity> position;  ///< two numbers in the plane, three in space [m]
-  Location where;
+  std::vector<Quantity> position;          ///< two numbers in the plane, three in space [m]
+  std::vector<Quantity> velocity;          ///< at the start [m/s]; at rest unless given
+  std::vector<Quantity> angular_velocity;  ///< at the start, one number in the plane, three in space [rad/s]
+  Location where, velocity_where, angular_velocity_where;
 };
 
 struct MaterialDescription {
