@@ -142,5 +142,18 @@ TEST(FormulaThatSwitches, DrivesAJointWithAnImpulseAtEachKink) {
   }
 }
 
+// The same bar under a moment of 300 N m that lasts 2 ms, from rest and beside a spring that is not yet stretched: it
+// leaves with 300*0.002/0.6 = 1 rad/s, 1 ms late.
+TEST(FormulaThatSwitches, StrikesAJointHoweverShortItsMoment) {
+  for (const std::string law : {"t > 0.5 && t < 0.502 ? 300 : 0", "(t > 0.5 && t < 0.502 ? 300 : 0) - 1e-9*angle"}) {
+    const std::string moment = "moment = \"" + law + "\"";
+    const testing::MechanismStudy ran(testing::replaced(driven_bar("0"), "drive = \"0\"", moment));
+    ASSERT_EQ(ran.report.status, RunStatus::done) << ran.report.message;
+    EXPECT_NEAR(ran.last("run", "angle", "motor"), 1.5 - 0.501, tolerance);
+    EXPECT_NEAR(ran.last("run.energy", "kinetic"), 0.3, 1e-6);
+    EXPECT_NEAR(ran.last("run.energy", "residue"), 0.0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace rubato::analysis

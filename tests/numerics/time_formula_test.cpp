@@ -147,6 +147,21 @@ TEST(TimeFormulaSwitches, HaveTheBranchOfEachSide) {
   }
 }
 
+// The law of a joint: what depends on where it is has no time.
+TEST(TimeFormulaSwitches, AreKnownBesideOtherValues) {
+  const auto times = [](const std::string& text) {
+    const auto formula = switching_formula(text, parameters, {"angle", "rate"});
+    return formula ? formula->switches(0.0, 50.0) : std::vector<double>{};
+  };
+  EXPECT_EQ(times("t > 5 && t < 7 ? 100 : -2*angle"), (std::vector<double>{5.0, 7.0}));
+  EXPECT_EQ(times("angle > 0 && t > 5 ? 100 : abs(rate)"), (std::vector<double>{5.0}));
+  EXPECT_EQ(times("max(angle, t - 5)"), std::vector<double>{});
+  EXPECT_EQ(times("(angle > 0 ? t : 2*t) > 5 ? 1 : 2"), std::vector<double>{});
+  EXPECT_EQ(times("(angle > 0 ? t : 2*t)*rate > 5 ? 1 : min(t, 3)"), (std::vector<double>{3.0}));
+  EXPECT_FALSE(switching_formula("-3*angle - rate*t", parameters, {"angle", "rate"}).has_value());
+  EXPECT_FALSE(switching_formula("speed > 3 ? t : 2", parameters).has_value());
+}
+
 TEST(TimeFormulaSwitches, JoinTheRowsOfATableButForRoundOff) {
   std::vector<double> times{0.3, 1.0, 2.0};
   add_switches({0.1 * 3.0, 1.5, 3.0 - 4e-16, 1e-30, 2.5, 2.5}, 0.0, 3.0, times);

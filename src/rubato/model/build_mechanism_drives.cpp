@@ -11,28 +11,6 @@
 namespace rubato::model {
 namespace {
 
-MotionLaw motion_law(const MechanismAssembly& assembly, const DriveDescription& drive, const std::string& part) {
-  if (const auto* formula = std::get_if<TimeFormulaDescription>(&drive.law)) {
-    try {
-      return numerics::TimeFormula(formula->formula.expression, assembly.parameters);
-    } catch (const InvalidInput& fault) {
-      throw InvalidInput(drive.where, fmt::format("{}: drive: {}", part, fault.message()));
-    }
-  }
-  const TimeLaw law = build_time_law(std::get<TableDescription>(drive.law), assembly.parameters, part + ": drive");
-  const auto& table = std::get<TableLaw>(law);
-  if (table.beyond == TableLaw::Beyond::zero)
-    throw InvalidInput(drive.where, fmt::format("{}: drive: beyond = \"zero\" would make it jump; take \"hold\", or "
-                                                "extend the table \"{}\"",
-                                                part, table.source));
-  for (std::size_t i = 1; i < table.times.size(); ++i)
-    if (!(table.times[i] > table.times[i - 1]))
-      throw InvalidInput(drive.where, fmt::format("{}: drive: the table \"{}\" jumps at t = {} s, and nothing moves "
-                                                  "from one place to another at once; give its rows a time between",
-                                                  part, table.source, table.times[i]));
-  return table;
-}
-
 Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
              const FreeCoordinate& s, double value) {
   const LockDescription& given = *joint.lock;
@@ -86,17 +64,18 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
                        fmt::format("{} has a drive and a lock: what is driven cannot lock; leave one out, or drive it "
                                    "by a {}",
                                    part, is_angle ? "moment" : "force"));
-  const MotionLaw law = motion_law(assembly, drive, part);
-  const numerics::TimeDerivatives start = derivatives(law, 0.0, Side::right);
-  if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
-    throw InvalidInput(drive.where, fmt::format("{}: the drive has no finite value, rate and second rate at t = 0 "
-                                                "({}, {}, {})",
-                                                part, start.value, start.rate, start.second_rate));
-  if (is_angle && !(std::abs(start.value - value) <= 2.0 * std::numbers::pi))
+  const std::string its_drive = part + ": drive";
+  const auto* formula = std::get_if<TimeFormulaDescription>(&drive.law);
+  const MotionLaw law =
+      formula
+          ? MotionLaw(build_motion(*formula, assembly.parameters, its_drive))
+          : MotionLaw(build_motion(std::get<TableDescription>(drive.law), assembly.parameters, its_drive, drive.where));
+  const double start = derivatives(law, 0.0, Side::right).value;
+  if (is_angle && !(std::abs(start - value) <= 2.0 * std::numbers::pi))
     throw InvalidInput(drive.where,
                        fmt::format("{}: the drive starts at {} rad, more than a turn away from the angle {} of the "
                                    "configuration given; if degrees are meant, write \"... * pi/180\"",
-                                   part, start.value, value));
+                                   part, start, value));
   return law;
 }
 

@@ -22,32 +22,15 @@ struct Building {
   }
 
   Prescribed operator()(const TimeFormulaDescription& formula) const {
-    try {
-      const numerics::TimeFormula motion(formula.formula.expression, parameters);
-      const numerics::TimeDerivatives start = motion(0.0);
-      if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
-        throw InvalidInput(fmt::format("\"{}\" has no finite value, rate and second rate at t = 0 ({}, {}, {})",
-                                       motion.text(), start.value, start.rate, start.second_rate));
-      return {coordinate, FormulaDerivative{motion, 0}, FormulaDerivative{motion, 1}, FormulaDerivative{motion, 2}};
-    } catch (const InvalidInput& fault) {
-      throw InvalidInput(formula.formula.where, part + ": " + fault.message());
-    }
+    const numerics::TimeFormula motion = build_motion(formula, parameters, part);
+    return {coordinate, FormulaDerivative{motion, 0}, FormulaDerivative{motion, 1}, FormulaDerivative{motion, 2}};
   }
 
   Prescribed operator()(const TableDescription& description) const {
-    const auto table = std::get<TableLaw>(build_time_law(description, parameters, part));
-    if (table.beyond == TableLaw::Beyond::zero)
-      throw InvalidInput(where, fmt::format("{}: beyond = \"zero\" would make it jump; take \"hold\", or extend the "
-                                            "table \"{}\"",
-                                            part, table.source));
+    const TableLaw table = build_motion(description, parameters, part, where);
     if (table.times.size() < 2)
       throw InvalidInput(
           where, fmt::format("{}: the table \"{}\" has one row; a motion takes at least two", part, table.source));
-    for (std::size_t i = 1; i < table.times.size(); ++i)
-      if (!(table.times[i] > table.times[i - 1]))
-        throw InvalidInput(where, fmt::format("{}: the table \"{}\" jumps at t = {} s, and nothing moves from one "
-                                              "place to another at once; give its rows a time between",
-                                              part, table.source, table.times[i]));
     SplineLaw displacement = spline_through(table), velocity = displacement, acceleration = displacement;
     velocity.order = 1;
     acceleration.order = 2;
@@ -56,6 +39,35 @@ struct Building {
 };
 
 }  // namespace
+
+numerics::TimeFormula build_motion(const TimeFormulaDescription& description, const numerics::Parameters& parameters,
+                                   const std::string& part) {
+  try {
+    numerics::TimeFormula motion(description.formula.expression, parameters);
+    const numerics::TimeDerivatives start = motion(0.0);
+    if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
+      throw InvalidInput(fmt::format("\"{}\" has no finite value, rate and second rate at t = 0 ({}, {}, {})",
+                                     motion.text(), start.value, start.rate, start.second_rate));
+    return motion;
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(description.formula.where, part + ": " + fault.message());
+  }
+}
+
+TableLaw build_motion(const TableDescription& description, const numerics::Parameters& parameters,
+                      const std::string& part, const Location& where) {
+  auto table = std::get<TableLaw>(build_time_law(description, parameters, part));
+  if (table.beyond == TableLaw::Beyond::zero)
+    throw InvalidInput(where, fmt::format("{}: beyond = \"zero\" would make it jump; take \"hold\", or extend the "
+                                          "table \"{}\"",
+                                          part, table.source));
+  for (std::size_t i = 1; i < table.times.size(); ++i)
+    if (!(table.times[i] > table.times[i - 1]))
+      throw InvalidInput(where, fmt::format("{}: the table \"{}\" jumps at t = {} s, and nothing moves from one place "
+                                            "to another at once; give its rows a time between",
+                                            part, table.source, table.times[i]));
+  return table;
+}
 
 Prescribed build_prescribed(const PrescribedDescription& description, Index coordinate,
                             const numerics::Parameters& parameters) {

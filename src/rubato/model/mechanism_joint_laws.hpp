@@ -50,6 +50,9 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
         joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;
     try {
       elements.push_back(make_joint_drive(joint.name, s, text, assembly.parameters, when));
+      if (auto formula =
+              numerics::switching_formula(text, assembly.parameters, {s.is_angle() ? "angle" : "displacement", "rate"}))
+        assembly.mechanism.joint_formulas.push_back(std::move(*formula));
     } catch (const InvalidInput& fault) {
       throw InvalidInput(joint.drive->where,
                          fmt::format("{}: {}: {}", part, s.is_angle() ? "moment" : "force", fault.message()));

@@ -101,13 +101,7 @@ struct Expression::Engine {
 Expression::Expression(std::string text, const Parameters& parameters, bool of_time)
     : text_(std::move(text)), parameters_(parameters), of_time_(of_time), engine_(std::make_unique<Engine>()) {
   prepare(engine_->parser, text_, parameters_, of_time_ ? &engine_->t : nullptr);
-  if (!of_time_) return;
-  try {
-    TimeFormula formula(text_, parameters_);
-    if (formula.has_switches()) engine_->switching = std::move(formula);
-  } catch (const InvalidInput&) {
-    // Something in it has no known derivative, and its switches stay unknown.
-  }
+  if (of_time_) engine_->switching = switching_formula(text_, parameters_);
 }
 
 Expression::Expression(const Expression& other) : Expression(other.text_, other.parameters_, other.of_time_) {}

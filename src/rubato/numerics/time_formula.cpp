@@ -1,6 +1,7 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
@@ -170,8 +171,8 @@ class TimeFormulaParser {
   using Kind = TimeFormula::Kind;
   using Node = TimeFormula::Node;
 
-  TimeFormulaParser(TimeFormula& formula, const Parameters& parameters)
-      : formula_(formula), text_(formula.text_), parameters_(parameters) {}
+  TimeFormulaParser(TimeFormula& formula, const Parameters& parameters, const std::vector<std::string>& others)
+      : formula_(formula), text_(formula.text_), parameters_(parameters), others_(others) {}
 
   void parse() {
     (void)choice();
@@ -310,6 +311,7 @@ class TimeFormulaParser {
     if (name == "pi") return add_constant(std::numbers::pi);
     for (const auto& [known, value] : parameters_)
       if (known == name) return add_constant(value);
+    if (std::find(others_.begin(), others_.end(), name) != others_.end()) return add(Kind::other);
     at_ = start;
     refuse();
   }
@@ -351,12 +353,16 @@ class TimeFormulaParser {
   TimeFormula& formula_;
   const std::string& text_;
   const Parameters& parameters_;
+  const std::vector<std::string>& others_;
   std::size_t at_ = 0;
 };
 
-TimeFormula::TimeFormula(std::string text, const Parameters& parameters) : text_(std::move(text)) {
-  require_expression(text_, parameters, true);
-  TimeFormulaParser(*this, parameters).parse();
+TimeFormula::TimeFormula(std::string text, const Parameters& parameters, std::vector<std::string> others)
+    : text_(std::move(text)) {
+  Parameters all = parameters;
+  for (const std::string& name : others) all.emplace_back(name, 0.0);
+  require_expression(text_, all, true);
+  TimeFormulaParser(*this, parameters, others).parse();
 }
 
 TimeDerivatives TimeFormula::operator()(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, 0); }
@@ -369,6 +375,8 @@ TimeDerivatives TimeFormula::at(int index, double t, int direction) const {
   const Node& node = nodes_[static_cast<std::size_t>(index)];
   if (node.kind == Kind::constant) return {node.constant, 0.0, 0.0};
   if (node.kind == Kind::time) return {t, 1.0, 0.0};
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (node.kind == Kind::other) return {unknown, unknown, unknown};
   const D a = at(node.first, t, direction);
   switch (node.kind) {
     case Kind::negative:

@@ -2,6 +2,7 @@
 
 #include <rubato/numerics/expression.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ struct TimeDerivatives {
 class TimeFormula {
  public:
   /// Throws InvalidInput as Expression does.
-  TimeFormula(std::string text, const Parameters& parameters);
+  /// @param others  names of further values that change with what moves: where a formula uses one it has no value here
+  ///                (not a number), and only switches that do not depend on it are known
+  TimeFormula(std::string text, const Parameters& parameters, std::vector<std::string> others = {});
 
   /// As it is written.
   TimeDerivatives operator()(double t) const;
@@ -27,7 +30,7 @@ class TimeFormula {
   TimeDerivatives from_left(double t) const;
   TimeDerivatives from_right(double t) const;
 
-  /// Whether it branches anywhere.
+  /// Whether it branches anywhere with t alone.
   bool has_switches() const;
   /// The times in (from, to) at which a branch changes, rising: where what is compared becomes equal, or the argument
   /// of abs or sign vanishes, or that of rint is half an integer. To round-off where that is straight in t between the
@@ -43,6 +46,7 @@ class TimeFormula {
   enum class Kind {
     constant,
     time,
+    other,
     negative,
     sum,
     difference,
@@ -78,6 +82,12 @@ class TimeFormula {
   std::string text_;
   std::vector<Node> nodes_;  // the last is the whole
 };
+
+/// The formula where it switches with t alone; none where it does not, or where something in it has no known
+/// derivative.
+/// @param others  names of values that change with what moves
+std::optional<TimeFormula> switching_formula(const std::string& text, const Parameters& parameters,
+                                             const std::vector<std::string>& others = {});
 
 /// Adds to sorted times those that do not coincide with one of them or with an end, to the round-off to which formulas
 /// know their switches.

@@ -1,3 +1,4 @@
+#include <rubato/core/error.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ class SwitchSearch {
   std::vector<double> find() {
     for (const Node& node : formula_.nodes_) {  // what a node is made of comes before it
       shapes_.push_back(shape_of(node));
-      if (!is_switch(node) || shape_of_argument(node) == Shape::constant) continue;
+      if (!switches_with_time(node)) continue;
       std::vector<double> ends = found_;
       ends.push_back(to_);
       changes_.clear();
@@ -35,7 +36,20 @@ class SwitchSearch {
     return found_;
   }
 
-  static bool is_switch(const TimeFormula::Node& node) {
+  bool finds_any() {
+    for (const Node& node : formula_.nodes_) {
+      shapes_.push_back(shape_of(node));
+      if (switches_with_time(node)) return true;
+    }
+    return false;
+  }
+
+ private:
+  using Kind = TimeFormula::Kind;
+  using Node = TimeFormula::Node;
+  enum class Shape { constant, straight, curved, unknown };  // between the changes within
+
+  static bool is_switch(const Node& node) {
     switch (node.kind) {
       case Kind::magnitude:
       case Kind::direction:
@@ -54,10 +68,10 @@ class SwitchSearch {
     }
   }
 
- private:
-  using Kind = TimeFormula::Kind;
-  using Node = TimeFormula::Node;
-  enum class Shape { constant, straight, curved };  // between the changes within
+  bool switches_with_time(const Node& node) const {
+    const Shape argument = shape_of_argument(node);
+    return is_switch(node) && argument != Shape::constant && argument != Shape::unknown;
+  }
 
   Shape known(int node) const { return node < 0 ? Shape::constant : shapes_[static_cast<std::size_t>(node)]; }
   Shape shape_of_argument(const Node& node) const { return std::max(known(node.first), known(node.second)); }
@@ -65,11 +79,14 @@ class SwitchSearch {
   Shape shape_of(const Node& node) const {
     const Shape first = known(node.first), second = known(node.second), third = known(node.third);
     const Shape most = std::max({first, second, third});
+    if (most == Shape::unknown && node.kind != Kind::choice) return Shape::unknown;
     switch (node.kind) {
       case Kind::constant:
         return Shape::constant;
       case Kind::time:
         return Shape::straight;
+      case Kind::other:
+        return Shape::unknown;
       case Kind::negative:
       case Kind::sum:
       case Kind::difference:
@@ -78,7 +95,7 @@ class SwitchSearch {
       case Kind::magnitude:
         return most;
       case Kind::choice:
-        return std::max(second, third);
+        return first == Shape::unknown ? Shape::unknown : std::max(second, third);
       case Kind::product:
         return first == Shape::constant || second == Shape::constant ? most : Shape::curved;
       case Kind::quotient:
@@ -181,7 +198,18 @@ class SwitchSearch {
   std::vector<double> found_, changes_;
 };
 
-bool TimeFormula::has_switches() const { return std::any_of(nodes_.begin(), nodes_.end(), SwitchSearch::is_switch); }
+bool TimeFormula::has_switches() const { return SwitchSearch(*this, 0.0, 0.0).finds_any(); }
+
+std::optional<TimeFormula> switching_formula(const std::string& text, const Parameters& parameters,
+                                             const std::vector<std::string>& others) {
+  try {
+    TimeFormula formula(text, parameters, others);
+    if (formula.has_switches()) return formula;
+  } catch (const InvalidInput&) {
+    // What makes no formula is refused by Expression; this has a function without a derivative.
+  }
+  return {};
+}
 
 std::vector<double> TimeFormula::switches(double from, double to) const { return SwitchSearch(*this, from, to).find(); }
 

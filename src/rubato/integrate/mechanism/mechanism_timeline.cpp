@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rubato::integrate {
 namespace {
@@ -52,6 +53,13 @@ std::vector<double> MechanismTimeline::breakpoints(double from, double to) const
       switches.insert(switches.end(), found.begin(), found.end());
     }
   }
+  joint_switches_.clear();
+  for (const auto& formula : mechanism_.model().joint_formulas) {
+    const std::vector<double> found = formula.switches(from, to), pieces = model::with_eighths(found);
+    joint_switches_.insert(joint_switches_.end(), found.begin(), found.end());
+    switches.insert(switches.end(), pieces.begin(), pieces.end());
+  }
+  std::sort(joint_switches_.begin(), joint_switches_.end());
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   std::sort(switches.begin(), switches.end());
@@ -62,7 +70,14 @@ std::vector<double> MechanismTimeline::breakpoints(double from, double to) const
 bool MechanismTimeline::jumps_at(double t) {
   loads_.evaluate(t, left_, model::Side::left);
   loads_.evaluate(t, right_, model::Side::right);
-  return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm())) || has_drive_jump(t);
+  return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm())) || has_drive_jump(t) ||
+         is_joint_switch(t);
+}
+
+bool MechanismTimeline::is_joint_switch(double t) const {
+  const double same_time = 16.0 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  const auto found = std::lower_bound(joint_switches_.begin(), joint_switches_.end(), t - same_time);
+  return found != joint_switches_.end() && *found <= t + same_time;
 }
 
 bool MechanismTimeline::has_drive_jump(double t) const {
@@ -123,6 +138,7 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
   result.candidates.assign(state.rubbing.size(), 0);
   const std::vector<int> old = state.rubbing;
   for (std::size_t i = 0; i < old.size(); ++i) {
+    if (old[i] == model::friction_free) continue;
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     result.has_changed = true;
@@ -138,7 +154,6 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
 }
 
 double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
-    if (old[i] == model::friction_free) continue;
   balanced_ = state;
   if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
   return equations_.friction_force(i, balanced_.multiplier);
@@ -255,6 +270,10 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     events_.push_back({state.t, static_cast<int>(i), engages, 0.0});
     const model::Lock& lock = mechanism_.model().locks[i];
     jumps = jumps || lock.is_rigid() || lock.is_latch || lock.damping > 0.0;
+    if (!engages && !lock.is_rigid() && lock.damping > 0.0) {
+      const double depth = lock.s.value(state.q.data()) - lock.at;
+      events_.back().energy_lost = 0.5 * lock.stiffness * depth * depth;
+    }
     if (!engages || !lock.is_rigid()) continue;
     if (!project(state, events_.back().energy_lost)) return Passage::fails;
     has_impact = true;
@@ -268,7 +287,3 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
 }
 
 }  // namespace rubato::integrate
-    if (!engages && !lock.is_rigid() && lock.damping > 0.0) {
-      const double depth = lock.s.value(state.q.data()) - lock.at;
-      events_.back().energy_lost = 0.5 * lock.stiffness * depth * depth;
-    }

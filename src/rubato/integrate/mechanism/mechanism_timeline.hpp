@@ -74,6 +74,7 @@ class MechanismTimeline final : public Timeline {
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
   bool release(system::State& state);
   bool has_drive_jump(double t) const;
+  bool is_joint_switch(double t) const;  ///< the law of a joint may jump there
   /// Velocities, accelerations and multipliers that the constraints allow from now on, friction left out.
   bool project(system::State& state, double& energy_lost);
 
@@ -85,6 +86,7 @@ class MechanismTimeline final : public Timeline {
   std::vector<Index> row_;                            // of the constraint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
   system::State balanced_;
+  mutable std::vector<double> joint_switches_;  // of laws of joints, in the interval of the last breakpoints()
   std::vector<LockEvent> events_;
   /// Transitions of a guard since a time and a place.
   struct Transitions {

@@ -4,9 +4,11 @@
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,7 +35,7 @@ class CoordinateLaw : public Element {
     if (!when_.is_at_work(motion)) return;
     double slope[k];
     s_.slope(motion.q, slope);
-    const double applied = law(s_.value(motion.q), s_.rate(motion), motion.t);
+    const double applied = law(s_.value(motion.q), s_.rate(motion), time_of(motion));
     for (int i = 0; i < k; ++i) force[i] = -applied * slope[i];
   }
 
@@ -43,8 +45,8 @@ class CoordinateLaw : public Element {
     if (!when_.is_at_work(motion)) return;
     double slope[k], rate_slope[k], by_s = 0.0, by_rate = 0.0;
     s_.slope(motion.q, slope);
-    const double s = s_.value(motion.q), rate = s_.rate(motion), applied = law(s, rate, motion.t);
-    law_slopes(s, rate, motion.t, by_s, by_rate);
+    const double s = s_.value(motion.q), rate = s_.rate(motion), t = time_of(motion), applied = law(s, rate, t);
+    law_slopes(s, rate, t, by_s, by_rate);
     if (!s_.has_constant_slope()) {
       s_.curvature(motion.q, 1.0, tangent);
       for (int i = 0; i < k; ++i) {  // ds'/dq = v curvature
@@ -71,6 +73,8 @@ class CoordinateLaw : public Element {
   virtual double law(double s, double rate, double t) const = 0;
   virtual void law_slopes(double s, double rate, double t, double& by_s, double& by_rate) const = 0;
   virtual bool depends_on_rate() const = 0;
+  /// Of a law that switches with time: just before or after, as the side says.
+  virtual double time_of(const Motion& motion) const { return motion.t; }
 
   Coordinate s_;
   AtLock when_;
@@ -127,16 +131,24 @@ class Drive final : public CoordinateLaw<Coordinate> {
   Drive(std::string name, const Coordinate& s, std::string formula, numerics::Parameters parameters, const AtLock& when)
       : Base(std::move(name), s, when), text_(std::move(formula)), names_(std::move(parameters)) {
     const bool is_angle = s.is_angle();
+    switches_ = numerics::switching_formula(text_, names_, {is_angle ? "angle" : "displacement", "rate"}).has_value();
     names_.insert(names_.begin(), {{is_angle ? "angle" : "displacement", 0.0}, {"rate", 0.0}, {"t", 0.0}});
     for (const std::size_t i : numerics::parameters_used(text_, names_))
       if (i < uses_.size()) uses_[i] = true;
     bind();
   }
-  Drive(const Drive& other) : Base(other), text_(other.text_), names_(other.names_), uses_(other.uses_) { bind(); }
+  Drive(const Drive& other)
+      : Base(other), text_(other.text_), names_(other.names_), uses_(other.uses_), switches_(other.switches_) {
+    bind();
+  }
   std::unique_ptr<Element> clone() const override { return std::make_unique<Drive>(*this); }
   Element::Role role() const override { return Element::Role::load; }
 
  private:
+  double time_of(const Motion& motion) const override {
+    constexpr double at_switch = 16.0 * std::numeric_limits<double>::epsilon();  // to which a step meets its time
+    return switches_ ? motion.t * (motion.side == Side::left ? 1.0 - at_switch : 1.0 + at_switch) : motion.t;
+  }
   void bind() {
     for (const auto& name : names_) values_.push_back(name.second);
     formula_ = std::make_unique<numerics::BoundFormula>(text_, names_, values_.data());
@@ -161,6 +173,7 @@ class Drive final : public CoordinateLaw<Coordinate> {
   std::string text_;
   numerics::Parameters names_;
   std::array<bool, 3> uses_{};  // s, rate, t
+  bool switches_ = false;       // with t alone
   mutable std::vector<double> values_;
   std::unique_ptr<numerics::BoundFormula> formula_;
   double constant_ = 0.0;
