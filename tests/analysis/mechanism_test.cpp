@@ -160,12 +160,13 @@ TEST(MechanismStudies, RefuseWhatCannotBeAssembledAndSayHowFarApart) {
 }
 
 TEST(MechanismStudies, NameTheLawThatReturnsANumberThatIsNotFinite) {
-  const std::string at_start = replaced(example("locking-bars"), "moment = 2000.0", "moment = \"log(t - 1)\"");
-  try {
-    run(at_start);
-    FAIL() << "started";
-  } catch (const InvalidInput& fault) {
-    EXPECT_NE(std::string(fault.what()).find("the law of \"B\" is not finite"), std::string::npos) << fault.what();
+  for (const std::string law : {"log(t - 1)", "log(angle - 4)", "sqrt(angle - pi/3)"}) {
+    try {
+      run(replaced(example("locking-bars"), "moment = 2000.0", "moment = \"" + law + "\""));
+      FAIL() << "started";
+    } catch (const InvalidInput& fault) {
+      EXPECT_NE(std::string(fault.what()).find("law of \"B\" is not finite"), std::string::npos) << fault.what();
+    }
   }
   const Ran later = run(replaced(example("locking-bars"), "moment = 2000.0", "moment = \"2000*sqrt(0.1 - t)\""));
   EXPECT_EQ(later.report.status, analysis::RunStatus::failed);
@@ -246,6 +247,35 @@ TEST(MechanismStudies, RefuseAVelocityBesideAStaticStart) {
   }
 }
 
+/// A bar of J = 0.3 + 2*0.49 = 1.28 kg m2 about its pin, upright, its centre 0.7 m above.
+std::string upright_bar(const std::string& analysis) {
+  return "[[body]]\nname = \"bar\"\nmass = 2.0\ninertia = 0.3\nposition = [0.0, 0.7]\n[[joint]]\nname = \"pin\"\ntype "
+         "= "
+         "\"revolute\"\nbetween = [\"ground\", \"bar\"]\nat = [0.0, 0.0]\n[gravity]\nacceleration = [0.0, -9.81]\n"
+         "[[analysis]]\nname = \"m\"\n" +
+         analysis;
+}
+
+// It falls as exp(sqrt(m g l/J) t) = exp(3.276/s t).
+TEST(MechanismStudies, SayThatAnEquilibriumIsNotStable) {
+  const Ran rest = run(upright_bar("type = \"static\"\n"));
+  EXPECT_EQ(rest.report.status, analysis::RunStatus::done) << rest.report.message;
+  ASSERT_EQ(rest.report.findings.size(), 1u);
+  EXPECT_NE(rest.report.findings[0].find("the equilibrium is not stable"), std::string::npos);
+  const auto& table = rest.sink.tables.at("m");
+  EXPECT_NEAR(table.rows[0][table.column("position", "bar.y")], 0.7, 1e-12);
+  const Ran modes = run(upright_bar("type = \"modes\"\nabout = \"static\"\n"));
+  EXPECT_EQ(modes.report.status, analysis::RunStatus::failed);
+  EXPECT_NE(modes.report.message.find("the equilibrium is not stable: a motion that the joints leave goes downhill "
+                                      "from it, exp(3.276/s t) without damping"),
+            std::string::npos)
+      << modes.report.message;
+  EXPECT_NE(modes.report.message.find("begin beside it"), std::string::npos) << modes.report.message;
+  const Ran motion = run(upright_bar("type = \"transient\"\ninitial = \"static\"\nstep = 0.01\nduration = 0.1\n"));
+  ASSERT_EQ(motion.report.warnings.size(), 1u);
+  EXPECT_NE(motion.report.warnings[0].find("is not stable"), std::string::npos) << motion.report.warnings[0];
+}
+
 // A pendulum of 1 mm finds its equilibrium as one of 1 m does: the search knows no metre.
 TEST(MechanismStudies, FindTheEquilibriumOfSmallMechanisms) {
   for (const auto& [place, length] : {std::pair{"0.6e-3, 0.0, 0.8e-3", 1e-3}, std::pair{"0.6, 0.0, 0.8", 1.0}}) {
@@ -286,7 +316,7 @@ TEST(MechanismFailures, NameTheSingularConfigurationNextToWhichTheyAre) {
     system::State state = mechanism.start();
     const double c = std::cos(angle), s = std::sin(angle);
     state.q.tail<9>() << 0.5 * c, 0.5 * s, angle, 1.0 + 0.5 * c, 0.5 * s, angle, 0.5 + c, s, 0.0;
-    return analysis::failure_of(report, mechanism, state, -1);
+    return analysis::failure_of(report, mechanism, state, -1, "");
   };
   // In line the four hinges ask twice that the bars keep their distance along it: nine coordinates and eight rows, of
   // which seven say something of their own.

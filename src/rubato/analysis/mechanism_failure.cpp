@@ -46,7 +46,7 @@ std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
 }  // namespace
 
 std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
-                       Index chattering) {
+                       Index chattering, const std::string& advice_on_step) {
   const std::string at =
       report.step.worst >= 0
           ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
@@ -76,9 +76,7 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
       break;
     case integrate::StepOutcome::too_small:
       what = "the error asked for a step below the smallest";
-      remedy =
-          "look for a jump of a load that is given by a formula (a table says where it jumps), allow a smaller step, "
-          "or a larger tolerance";
+      remedy = advice_on_step;
       break;
     case integrate::StepOutcome::no_way_on:
       if (chattering >= 0) {

@@ -9,9 +9,10 @@ namespace rubato::analysis {
 
 /// Why a march of a mechanism ended before its time, with the names of the user's parts, and what may help. A singular
 /// configuration is named with the joints that repeat others there.
-/// @param state       the last accepted one
-/// @param chattering  the guard that changed without end; -1: none
+/// @param state           the last accepted one
+/// @param chattering      the guard that changed without end; -1: none
+/// @param advice_on_step  what helps where the error asks for a step below the smallest
 std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
-                       Index chattering);
+                       Index chattering, const std::string& advice_on_step);
 
 }  // namespace rubato::analysis

@@ -60,6 +60,7 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
     plan.state = at_rest(plan.state, mechanism, plan.warnings);
     return plan;
   }
+  plan.about_equilibrium = true;
   MechanismStatic found = equilibrium_near(plan.state, mechanism);
   if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
     throw InvalidInput(*description.about_equilibrium, title + complaint);
@@ -87,9 +88,12 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
   if (modes.freedoms == 0)
     report.message = "the joints leave no motion";
   else if (!modes.is_stable)
-    report.message =
-        "the configuration is not stable: a motion that the joints leave goes downhill from it, and has no "
-        "frequency; about = \"static\" leads to one that is";
+    report.message = fmt::format(
+        "the {0} is not stable: a motion that the joints leave goes downhill from it, exp({1:.4g}/s t) without "
+        "damping, and has no frequency; {2}",
+        plan.about_equilibrium ? "equilibrium" : "configuration", modes.growth,
+        plan.about_equilibrium ? "begin beside it to be led to one that is"
+                               : "about = \"static\" leads to one that is");
   else if (plan.modes.count > modes.freedoms)
     report.message =
         fmt::format("{} modes were asked for, and the joints leave {} motions", plan.modes.count, modes.freedoms);

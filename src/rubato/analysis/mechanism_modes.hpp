@@ -13,6 +13,7 @@ struct MechanismModesPlan {
   ModesPlan modes;      ///< a count of 0: all, at most 20
   system::State state;  ///< at rest, with the multipliers of its loads
   std::vector<std::string> warnings;
+  bool about_equilibrium = false;
 };
 
 /// Evaluates a description and finds the configuration. Throws InvalidInput, at its place, for a mechanism that cannot

@@ -166,11 +166,12 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
                     mechanism.rows()[static_cast<std::size_t>(start.worst_rate)], start.gap_rate,
                     fmt::join(drives, ", ")));
   }
-  if (start.is_assembled && !start.is_consistent) {
+  if (!start.is_consistent) {
     equations.go_to(start.state, model::Side::right);
     const std::string part = equations.non_finite_part();
-    throw InvalidInput(where, fmt::format("there are no finite accelerations at the start{}",
-                                          part.empty() ? "" : ": " + part + " is not finite there"));
+    if (start.is_assembled || !part.empty())
+      throw InvalidInput(where, fmt::format("there are no finite accelerations at the start{}",
+                                            part.empty() ? "" : ": " + part + " is not finite there"));
   }
   if (!start.is_consistent) {
     const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
@@ -262,6 +263,9 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
     const MechanismStatic found = equilibrium_near(transient.start, mechanism);
     if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
       throw InvalidInput(where, title + complaint);
+    if (!found.is_stable)
+      plan.warnings.push_back(
+          "the equilibrium at the start is not stable: what moves from there begins with round-off");
     transient.start = set_in_motion(where, mechanism, found.state);
   }
   settle_start(where, mechanism, transient.start);

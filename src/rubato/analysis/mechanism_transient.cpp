@@ -170,7 +170,8 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   report_events(timeline.events(), mechanism, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = failure_of(report.march, mechanism, state, timeline.chattering());
+    run.message = failure_of(report.march, mechanism, state, timeline.chattering(),
+                             advice_on_smallest(step.plan, transient.duration));
   } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);

@@ -23,8 +23,8 @@ using std::numbers::pi;
 constexpr double length = 1.0, bending = 2.0;
 constexpr int elements = 10;
 
-/// A cantilever along x under a moment at its free end, in the plane.
-system::Mechanism plane_cantilever(double moment) {
+/// A cantilever along x in the plane, with a load along an axis of its free end.
+system::Mechanism plane_cantilever(std::size_t axis, double load) {
   model::Mechanism m(2);
   Index last = m.add_node("0", {0.0, 0.0, 0.0}, {false, false, false});
   for (int i = 1; i <= elements; ++i) {
@@ -35,11 +35,11 @@ system::Mechanism plane_cantilever(double moment) {
         model::make_plane_beam("beam", m.plane_node(last), m.plane_node(next), from, to, {1e4, 4e3, bending}));
     last = next;
   }
-  m.forces.push_back({m.nodes[std::size_t(last)].place[5], model::HarmonicLaw{moment, 0.0, 0.0}});
+  m.forces.push_back({m.nodes[std::size_t(last)].place[axis], model::HarmonicLaw{load, 0.0, 0.0}});
   return system::Mechanism(std::move(m));
 }
 
-/// The same about an axis across it in space.
+/// The same in space, with a moment about an axis across it.
 system::Mechanism space_cantilever(double moment) {
   model::Mechanism m(3);
   Index last = m.add_space_node("0", Vector3::Zero(), Rotation::Identity(), {});
@@ -63,7 +63,7 @@ system::Mechanism space_cantilever(double moment) {
 // M = 2 pi E I/L rolls a cantilever into a circle (Simo and Vu-Quoc 1986): every element turns by 2 pi/10 against the
 // next, and the chords make a regular polygon, which closes exactly.
 TEST(MechanismEquilibrium, RollsACantileverIntoACircle) {
-  const system::Mechanism mechanism = plane_cantilever(2.0 * pi * bending / length);
+  const system::Mechanism mechanism = plane_cantilever(5, 2.0 * pi * bending / length);
   system::MechanismEquations equations(mechanism);
   const auto found = find_equilibrium(equations, mechanism.start());
   ASSERT_TRUE(found.is_found) << found.residual << " at " << found.worst;
@@ -125,17 +125,49 @@ TEST(MechanismModes, OfTheHangingDoublePendulumAreThoseOfItsAngles) {
     for (const Index vertical : {1, 3}) EXPECT_NEAR(std::abs(mode.shape[vertical]), 0.0, 1e-12);
 }
 
-TEST(MechanismModes, SayThatAnUprightPendulumIsUnstable) {
+/// A bob of 3 kg on a rod of 2 m that stands beside the vertical by an angle.
+system::Mechanism upright_pendulum(double beside) {
   model::Mechanism m(2);
-  const Index bob = m.add_node("bob", {0.0, 1.0, 0.0}, {true, true, false});
+  const double x = 2.0 * std::sin(beside), y = 2.0 * std::cos(beside);
+  const Index bob = m.add_node("bob", {x, y, 0.0}, {true, true, false});
   m.add_mass(bob, 3.0);
-  m.joints.push_back(model::make_plane_distance("rod", m.plane_point(0, 0.0, 0.0), m.plane_point(bob, 0.0, 1.0), 1.0));
+  m.joints.push_back(model::make_plane_distance("rod", m.plane_point(0, 0.0, 0.0), m.plane_point(bob, x, y), 2.0));
   m.gravity = {0.0, -9.81, 0.0};
-  const system::Mechanism mechanism(std::move(m));
+  return system::Mechanism(std::move(m));
+}
+
+// It stands where it is put, and falls as exp(sqrt(g/l) t); beside that by more than the tolerance, 1e-10, it hangs.
+TEST(MechanismEquilibrium, OfAPendulumThatStandsUprightIsNotStable) {
+  const system::Mechanism mechanism = upright_pendulum(0.0);
   system::MechanismEquations equations(mechanism);
-  system::State upright = mechanism.start();
-  upright.multiplier = Vector::Constant(1, -3.0 * 9.81);
-  EXPECT_FALSE(integrate::modes_about(equations, upright, 1).is_stable);
+  const auto found = find_equilibrium(equations, mechanism.start());
+  ASSERT_TRUE(found.is_found) << found.residual << " after " << found.iterations;
+  EXPECT_FALSE(found.is_stable);
+  EXPECT_NEAR(found.state.q[4], 2.0, 1e-12);
+  EXPECT_NEAR(std::abs(found.state.multiplier[0]), 3.0 * 9.81, 1e-8);
+  const auto modes = integrate::modes_about(equations, found.state, 1);
+  EXPECT_FALSE(modes.is_stable);
+  EXPECT_NEAR(modes.growth, std::sqrt(9.81 / 2.0), 1e-9);
+
+  const system::Mechanism leaning = upright_pendulum(1e-7);
+  system::MechanismEquations beside(leaning);
+  const auto hanging = find_equilibrium(beside, leaning.start());
+  ASSERT_TRUE(hanging.is_found) << hanging.residual << " after " << hanging.iterations;
+  EXPECT_TRUE(hanging.is_stable);
+  EXPECT_NEAR(hanging.state.q[4], -2.0, 1e-9);
+}
+
+// Euler's load of a cantilever is pi^2 E I/(4 l^2) = 4.93 N; ten elements and the shear move it by less than a percent.
+TEST(MechanismEquilibrium, OfAStraightColumnIsStableUpToEulersLoad) {
+  const double euler = pi * pi * bending / 4.0;
+  for (const double share : {0.5, 0.95, 1.05, 2.0}) {
+    const system::Mechanism mechanism = plane_cantilever(0, -share * euler);
+    system::MechanismEquations equations(mechanism);
+    const auto found = find_equilibrium(equations, mechanism.start());
+    ASSERT_TRUE(found.is_found) << share;
+    EXPECT_EQ(found.is_stable, share < 1.0) << share;
+    EXPECT_NEAR(found.state.q[3 * (elements + 1)], length * (1.0 - share * euler / 1e4), 1e-9) << share;
+  }
 }
 
 TEST(MechanismEquilibrium, IsNotFoundOfABodyThatFalls) {

@@ -45,37 +45,26 @@ class Search {
     scale_ = stiffness_per_mass();
     double shift = first_shift * scale_, last = HUGE_VAL;
     for (found_.iterations = 0; found_.iterations < plan_.most_iterations; ++found_.iterations) {
-      system::State& state = found_.state;
-      equations_.go_to(state, model::Side::right);
-      equations_.linearise({shift, 0.0, 1.0, scale_}, state.multiplier, force_, constraint_);
-      equations_.add_constraint_force(state.multiplier, 1.0, force_);
-      found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
-      if (!std::isfinite(found_.residual)) return found_;
-      if (!equations_.factorise()) return found_;
-      if (!equations_.is_positive() && shift < most_shift * scale_) {
-        // Newton's method would climb: a larger shift leads downhill.
+      if (!factorise(shift)) return found_;
+      const double norm = force_norm();
+      const bool climbs = !equations_.is_positive() && shift < most_shift * scale_;
+      const Correction correction = correct();
+      if (!std::isfinite(correction.size)) return found_;
+      if (climbs) {
+        // Newton's method would climb, and a larger shift leads downhill; unless nothing is left to go.
+        if (is_small(correction) && stands()) return found_;
         shift *= 10.0;
         continue;
       }
-      const double norm = force_norm();
-      force_ = -force_;
-      constraint_ = -constraint_;
-      equations_.solve(force_, constraint_);
-      const double share = longest_share();
-      mechanism_.times_mass(force_, product_);
-      const double size = std::sqrt(std::max(force_.dot(product_), 0.0));
-      if (!std::isfinite(size)) return found_;
-      mechanism_.retract(state.q, share * force_, next_);
-      std::swap(state.q, next_);
-      state.multiplier += share * constraint_;
-      if (share == 1.0 && size <= plan_.tolerance * reference_ && shift <= settled * scale_) {
+      advance(correction);
+      if (is_small(correction) && shift <= settled * scale_) {
         found_.is_found = true;
         found_.is_stable = equations_.is_positive();
         return found_;
       }
       // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
       const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
-      shift = std::max(least_shift * scale_, shift * (share == 1.0 ? std::min(fall, 0.5) : 1.0));
+      shift = std::max(least_shift * scale_, shift * (correction.share == 1.0 ? std::min(fall, 0.5) : 1.0));
       last = norm;
     }
     return found_;
@@ -86,26 +75,12 @@ class Search {
   MechanismEquilibrium near(double load) {
     constexpr int enough = 30;  // it converges in ten, or not at all
     scale_ = stiffness_per_mass();
-    system::State& state = found_.state;
     for (found_.iterations = 0; found_.iterations < enough; ++found_.iterations) {
-      const system::MechanismEquations::Weights weights{0.0, 0.0, 1.0, scale_};
-      equations_.go_to(state, model::Side::right);
-      equations_.linearise(weights, state.multiplier, force_, constraint_);
-      equations_.scale_loads(load, weights, force_);
-      equations_.add_constraint_force(state.multiplier, 1.0, force_);
-      found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
-      if (!std::isfinite(found_.residual) || !equations_.factorise()) return found_;
-      force_ = -force_;
-      constraint_ = -constraint_;
-      equations_.solve(force_, constraint_);
-      const double share = longest_share();
-      mechanism_.times_mass(force_, product_);
-      const double size = std::sqrt(std::max(force_.dot(product_), 0.0));
-      if (!std::isfinite(size)) return found_;
-      mechanism_.retract(state.q, share * force_, next_);
-      std::swap(state.q, next_);
-      state.multiplier += share * constraint_;
-      if (share < 1.0 || !(size <= plan_.tolerance * reference_)) continue;
+      if (!factorise(0.0, load)) return found_;
+      const Correction correction = correct();
+      if (!std::isfinite(correction.size)) return found_;
+      advance(correction);
+      if (!is_small(correction)) continue;
       found_.is_found = true;
       found_.is_stable = equations_.is_positive();
       return found_;
@@ -114,6 +89,53 @@ class Search {
   }
 
  private:
+  /// What leads from the state to the next one: `share` of the solution, and the size of the whole in the mass norm.
+  struct Correction {
+    double share, size;
+  };
+
+  /// The residual and the factors of  K + shift M  under a share of the loads; false where they are no numbers.
+  bool factorise(double shift, double load = 1.0) {
+    const system::MechanismEquations::Weights weights{shift, 0.0, 1.0, scale_};
+    equations_.go_to(found_.state, model::Side::right);
+    equations_.linearise(weights, found_.state.multiplier, force_, constraint_);
+    if (load != 1.0) equations_.scale_loads(load, weights, force_);
+    equations_.add_constraint_force(found_.state.multiplier, 1.0, force_);
+    found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
+    return std::isfinite(found_.residual) && equations_.factorise();
+  }
+
+  Correction correct() {
+    force_ = -force_;
+    constraint_ = -constraint_;
+    equations_.solve(force_, constraint_);
+    mechanism_.times_mass(force_, product_);
+    return {longest_share(), std::sqrt(std::max(force_.dot(product_), 0.0))};
+  }
+
+  void advance(const Correction& correction) {
+    system::State& state = found_.state;
+    mechanism_.retract(state.q, correction.share * force_, next_);
+    std::swap(state.q, next_);
+    state.multiplier += correction.share * constraint_;
+  }
+
+  bool is_small(const Correction& correction) const {
+    return correction.share == 1.0 && correction.size <= plan_.tolerance * reference_;
+  }
+
+  /// Whether the state is an equilibrium of its own, from which all that goes downhill begins with round-off.
+  bool stands() {
+    if (!factorise(least_shift * scale_)) return false;
+    const bool is_stable = equations_.is_positive();
+    const Correction correction = correct();
+    if (!is_small(correction)) return false;
+    advance(correction);
+    found_.is_found = true;
+    found_.is_stable = is_stable;
+    return true;
+  }
+
   static constexpr double settled = 1e-6;  // a shift that leaves a linear convergence of soft modes to be waited for
 
   /// Stiffness over mass of the mechanism in an arbitrary direction [1/s2], from a small motion along it.

@@ -30,7 +30,7 @@ struct MechanismEquilibrium {
 /// Newton's method on K + shift M, whose shift falls with the residual (pseudo-transient continuation, Kelley and Keyes
 /// 1998) and grows where the matrix is not positive definite on the constraints: it leads downhill, across
 /// configurations in which the stiffness is singular, to an equilibrium that is stable, unless it begins in one that is
-/// not.
+/// not, or next to it by no more than the tolerance: a pendulum that stands upright is found standing.
 /// Where that finds none, the loads (forces, gravity, laws of joints) are raised from zero by steps, each from the
 /// equilibrium of the last by Newton's method alone: a step that fails is halved, the next after one that succeeds
 /// twice as long. So the way of a structure under a growing load is followed, as far as no limit point stops it,

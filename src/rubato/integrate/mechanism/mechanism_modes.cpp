@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rubato::integrate {
 namespace {
@@ -44,7 +45,10 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> signs(Matrix(stiffness), Matrix(mass), Eigen::EigenvaluesOnly);
   const Vector squares = signs.eigenvalues();
   result.is_stable = squares[0] >= -1e-10 * squares.cwiseAbs().maxCoeff();
-  if (!result.is_stable) return result;
+  if (!result.is_stable) {
+    result.growth = std::sqrt(-squares[0]);
+    return result;
+  }
   result.found = numerics::lowest_damped_modes(stiffness, symmetric(reduced(linear.damping, basis)), mass,
                                                std::min(count, result.freedoms));
   for (auto& mode : result.found.modes) mode.shape = (basis * mode.shape).eval();

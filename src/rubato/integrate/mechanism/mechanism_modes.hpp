@@ -10,6 +10,7 @@ struct MechanismModes {
   numerics::DampedModes found;  ///< shapes in all tangent coordinates [n]; they satisfy the constraints
   Index freedoms = 0;           ///< n less the constraints that say something of their own
   bool is_stable = true;  ///< false: the stiffness on the constraints has a negative eigenvalue, and nothing is found
+  double growth = 0.0;    ///< of the motion that leaves it fastest, exp(growth t), without damping [1/s]; 0: stable
   double skew = 0.0;      ///< the size of the skew part of K, which is left out, over that of K [-]
 };
 
