@@ -1,8 +1,7 @@
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/static.hpp>
-#include <rubato/model/model.hpp>
-#include <rubato/system/assemble.hpp>
 
+#include "support/assembled.hpp"
 #include "support/frame.hpp"
 #include "support/memory_sink.hpp"
 
@@ -18,20 +17,15 @@
 namespace rubato::analysis {
 namespace {
 
+using testing::assembled;
+using testing::place_of;
+using testing::portal;
+
 /// Analyses of a system that no sweep makes again.
 StudyInput input_of(const system::LocallyNonlinear& system) {
   static const model::StudyDescription no_study;
   static const numerics::Parameters none;
   return {no_study, none, none, system};
-}
-
-system::LocallyNonlinear assembled(const model::ModelDescription& description) {
-  return system::assemble(model::build(description, {}));
-}
-
-Index place_of(const system::LocallyNonlinear& system, const std::string& name) {
-  const auto& names = system.coordinates();
-  return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
 /// The frame cut free at node 1 is a bent cantilever: beam along x, column along y. Displacements at points of it under
@@ -256,31 +250,6 @@ TEST(StaticEquilibrium, ClosesAStopWhereTheSpringGivesThatFar) {
   EXPECT_EQ(found.state.slider_force[1], 0.0);
 }
 
-/// Two columns of height H, fixed at their feet, and a beam of length B between their heads.
-model::ModelDescription portal(double height, double width) {
-  model::ModelDescription description;
-  model::StructureDescription& frame = description.structure;
-  const double places[][2] = {{0.0, 0.0}, {0.0, height}, {width, height}, {width, 0.0}};
-  for (const auto& p : places)
-    frame.nodes.push_back(testing::node_at(std::to_string(frame.nodes.size() + 1), p[0], p[1]));
-  frame.materials = {{"steel", 2.1e11, 0.3, {}, 7850.0, {}}};
-  frame.sections = {{"tube", 1e-3, {1e-6}, {}, {}, {}}};
-  for (const auto& [first, second] : {std::pair{"1", "2"}, {"2", "3"}, {"4", "3"}}) {
-    model::BeamDescription beam;
-    beam.nodes = {first, second};
-    beam.section = "tube";
-    beam.material = "steel";
-    beam.formulation = model::BeamDescription::Formulation::euler_bernoulli;
-    frame.beams.push_back(beam);
-  }
-  model::SupportDescription left, right;
-  left.node = "1";
-  right.node = "4";
-  left.fix = right.fix = {"x", "y", "rz"};
-  frame.supports = {left, right};
-  return description;
-}
-
 // Hinges at both ends of the beam leave two cantilevers: F H^3 / (3 EI) under F at each head.
 TEST(StaticEquilibrium, OfAPortalWithHingesIsThatOfTwoCantilevers) {
   const double height = 3.0, force = 1e3;
@@ -293,77 +262,6 @@ TEST(StaticEquilibrium, OfAPortalWithHingesIsThatOfTwoCantilevers) {
   const double expected = force * std::pow(height, 3) / (3.0 * 2.1e11 * 1e-6);
   EXPECT_NEAR(found.state.q[place_of(system, "2.x")], expected, 1e-11 * expected);
   EXPECT_NEAR(found.state.q[place_of(system, "3.x")], expected, 1e-11 * expected);
-}
-
-// Hinges at all four corners make a four-bar linkage, whose beam swings sideways.
-TEST(StaticEquilibrium, OfAFourBarLinkageDoesNotExist) {
-  model::ModelDescription description = portal(3.0, 4.0);
-  for (auto& beam : description.structure.beams) beam.release = {{{"rz"}, {"rz"}}};
-  const auto system = assembled(description);
-  EXPECT_EQ(system.size(), 4);  // no corner shares a rotation with anything
-  const StaticEquilibrium found = find_equilibrium(system, {});
-  ASSERT_EQ(found.outcome, StaticOutcome::mechanism);
-  std::vector<std::string> names;
-  for (const Index i : found.moving) names.push_back(system.coordinates()[static_cast<std::size_t>(i)]);
-  EXPECT_EQ(names, (std::vector<std::string>{"2.x", "3.x"}));
-}
-
-/// A bar from a clamped node "a" to "b" along `along`, hinged at both ends, with a unit load on b.`loaded`.
-system::LocallyNonlinear hinged_bar(std::vector<double> along, model::BeamDescription::Formulation formulation,
-                                    const std::string& loaded) {
-  const bool in_plane = along.size() == 2;
-  model::ModelDescription description = portal(3.0, 4.0);
-  model::StructureDescription& bar = description.structure;
-  bar.nodes.resize(2);
-  bar.nodes[0].name = "a";
-  bar.nodes[0].position.assign(along.size(), 0.0);
-  bar.nodes[1].name = "b";
-  bar.nodes[1].position.assign(along.begin(), along.end());
-  bar.sections[0].shear_factor = {0.8};
-  if (!in_plane) {
-    bar.sections[0].inertia = {2e-6, 1e-6};
-    bar.sections[0].torsion = 1e-7;
-    bar.sections[0].shear_factor = {0.8, 0.7};
-  }
-  bar.beams.resize(1);
-  bar.beams[0].nodes = {"a", "b"};
-  bar.beams[0].formulation = formulation;
-  bar.beams[0].release = {{{"rz"}, {"rz"}}};
-  if (!in_plane) {
-    // Off the axes of the model what is left of the inertia of a node must not be about a skew axis alone.
-    const bool is_skew = along[0] * along[1] != 0.0;
-    if (!is_skew) bar.beams[0].release = {{{"ry", "rz"}, {"ry", "rz"}}};
-    bar.beams[0].orientation = {is_skew ? 0.0 : 0.3, 1.0, is_skew ? 0.0 : -0.2};
-  }
-  bar.supports.resize(1);
-  bar.supports[0].node = "a";
-  bar.supports[0].fix = {"x", "y", "rz"};
-  if (!in_plane) bar.supports[0].fix = {"x", "y", "z", "rx", "ry", "rz"};
-  description.held_forces = {{loaded, 1.0, {}}};
-  return assembled(description);
-}
-
-// The far end swings about the near one, whatever the direction of the bar.
-TEST(StaticEquilibrium, OfAHingedBarDoesNotExistInAnyDirection) {
-  using Formulation = model::BeamDescription::Formulation;
-  const double skew = 0.7;
-  for (const Formulation formulation : {Formulation::euler_bernoulli, Formulation::timoshenko})
-    for (const double length : {1.0, 0.3, 1.0 / 3.0, 7.0}) {
-      const std::vector<std::pair<std::vector<double>, std::string>> bars{
-          {{length, 0.0}, "b.y"},
-          {{0.0, length}, "b.x"},
-          {{length * std::cos(skew), length * std::sin(skew)}, "b.x"},
-          {{length, 0.0, 0.0}, "b.y"},
-          {{length, 0.0, 0.0}, "b.z"},
-          {{0.0, 0.0, -length}, "b.x"},
-          {{length * std::cos(skew), length * std::sin(skew), 0.0}, "b.y"}};
-      for (const auto& [along, loaded] : bars) {
-        const auto system = hinged_bar(along, formulation, loaded);
-        const StaticEquilibrium found = find_equilibrium(system, {});
-        ASSERT_EQ(found.outcome, StaticOutcome::mechanism) << loaded << " length " << length;
-        EXPECT_EQ(std::count(found.moving.begin(), found.moving.end(), place_of(system, loaded)), 1) << loaded;
-      }
-    }
 }
 
 /// A beam of 2 m in equal parts, held at both ends.
@@ -402,50 +300,6 @@ TEST(StaticEquilibrium, WithReleasedEndsIsThatOfPinnedSupports) {
   EXPECT_GE(lowest(released), lowest(pinned) * (1.0 - 1e-12));
   EXPECT_NEAR(lowest(released) / exact, 1.0, std::pow(std::numbers::pi / 8.0, 4) / 720.0 * 8.0);
   EXPECT_LT(lowest(held_beam(16, true)) / exact - 1.0, (lowest(released) / exact - 1.0) / 8.0);
-}
-
-std::vector<std::string> moving(const system::LocallyNonlinear& system) {
-  const StaticEquilibrium found = find_equilibrium(system, {});
-  EXPECT_EQ(found.outcome, StaticOutcome::mechanism);
-  std::vector<std::string> names;
-  for (const Index i : found.moving) names.push_back(system.coordinates()[static_cast<std::size_t>(i)]);
-  return names;
-}
-
-// Where the half beam ends in a truss, nothing keeps its end from rising.
-TEST(Mechanism, NamesTheCoordinatesThatMove) {
-  model::ModelDescription description = testing::portal_frame();
-  model::TrussDescription truss;
-  static_cast<model::LineDescription&>(truss) = description.structure.beams[0];
-  description.structure.trusses = {truss};
-  description.structure.beams.erase(description.structure.beams.begin());
-  EXPECT_EQ(moving(assembled(description)), std::vector<std::string>{"1.y"});
-
-  description = testing::portal_frame();
-  description.structure.supports.pop_back();
-  description.structure.supports[0].fix = {"x", "rz"};
-  // What is left may slide down as a whole.
-  EXPECT_EQ(moving(assembled(description)),
-            (std::vector<std::string>{"1.y", "2.y", "3.y", "4.y", "5.y", "6.y", "7.y"}));
-}
-
-TEST(Mechanism, IsToldFromAFineMeshAndFromSoftSprings) {
-  model::ModelDescription description = testing::portal_frame();
-  for (auto& beam : description.structure.beams) beam.elements = 1000;
-  EXPECT_EQ(find_equilibrium(assembled(description), {}).outcome, StaticOutcome::found);
-  description.structure.supports[0].fix = {"x"};
-  description.structure.supports[1].fix = {"y"};
-  EXPECT_EQ(find_equilibrium(assembled(description), {}).outcome, StaticOutcome::mechanism);
-
-  model::ModelDescription chain;
-  chain.coordinates = {{"a", 1.0, 0.0, 0.0, {}}, {"b", 1.0, 0.0, 0.0, {}}};
-  chain.springs = {{{"a", "b"}, {}, 1e9, {}}, {{"a", "ground"}, {}, 1e-3, {}}};
-  chain.held_forces = {{"b", 1.0, {}}};
-  const StaticEquilibrium soft = find_equilibrium(assembled(chain), {});
-  ASSERT_EQ(soft.outcome, StaticOutcome::found);
-  EXPECT_NEAR(soft.state.q[0], 1e3, 1.0);  // 1e12 roundings, less what refinement returns
-  chain.springs.pop_back();
-  EXPECT_EQ(moving(assembled(chain)), (std::vector<std::string>{"a", "b"}));
 }
 
 TEST(StaticAnalysis, WritesDisplacementsAnglesAndReactions) {
