@@ -16,6 +16,9 @@ std::string MechanismStatic::complaint(const system::Mechanism& mechanism) const
   if (beyond_lock >= 0)
     return fmt::format("the equilibrium lies beyond the lock of \"{}\"; let a transient come to rest there",
                        mechanism.model().locks[static_cast<std::size_t>(beyond_lock)].name);
+  if (pulling_lock >= 0)
+    return fmt::format("at the equilibrium the stop of \"{}\" would have to pull; let a transient go on from there",
+                       mechanism.model().locks[static_cast<std::size_t>(pulling_lock)].name);
   if (is_found) return {};
   const std::string left =
       worst < 0 ? std::string()
@@ -42,9 +45,17 @@ MechanismStatic equilibrium_near(const system::State& start, const system::Mecha
   result.load_steps = found.load_steps;
   result.load = found.load;
   const auto& locks = mechanism.model().locks;
-  for (std::size_t i = 0; i < locks.size(); ++i)
-    if (locks[i].sign * (locks[i].s.value(result.state.q.data()) - locks[i].at) > 0.0)
-      result.beyond_lock = static_cast<int>(i);
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    const model::Lock& lock = locks[i];
+    const double beyond = lock.sign * (lock.s.value(result.state.q.data()) - lock.at);
+    if (result.state.phase[i] == model::lock_open) {
+      if (beyond > 0.0) result.beyond_lock = static_cast<int>(i);
+    } else if (!lock.is_latch) {
+      const double pressing =
+          lock.is_rigid() ? lock.sign * result.state.multiplier[mechanism.first_row(lock.joint)] : beyond;
+      if (pressing < 0.0) result.pulling_lock = static_cast<int>(i);
+    }
+  }
   return result;
 }
 

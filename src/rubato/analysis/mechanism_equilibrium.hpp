@@ -19,6 +19,7 @@ struct MechanismStatic {
   int load_steps = 0;     ///< 0: found with all loads at once
   double load = 1.0;      ///< the share of the loads in whose equilibrium the state is
   int beyond_lock = -1;   ///< a lock that the way to it would have reached
+  int pulling_lock = -1;  ///< a stop that holds at the start, and would let go there
 
   /// Why it is no equilibrium to go on from; empty where it is one.
   std::string complaint(const system::Mechanism& mechanism) const;

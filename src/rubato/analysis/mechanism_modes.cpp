@@ -1,6 +1,6 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
+#include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
-#include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
@@ -35,11 +35,79 @@ system::State at_rest(const system::State& start, const system::Mechanism& mecha
   return state;
 }
 
+MechanismModesPlan::Reached reached_by(const std::string& title, const model::ReachedDescription& description,
+                                       const system::Mechanism& mechanism, const StudyInput& input) {
+  std::vector<std::string> known;
+  for (const model::AnalysisDescription& analysis : input.study.analyses) {
+    const auto* transient = std::get_if<model::TransientDescription>(&analysis.task);
+    if (!transient) continue;
+    known.push_back(analysis.name);
+    if (analysis.name != description.analysis) continue;
+    MechanismModesPlan::Reached reached;
+    reached.motion = plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters);
+    reached.analysis = analysis.name;
+    reached.settles = description.settles;
+    const double duration = reached.motion.transient.duration;
+    reached.time =
+        description.time ? model::evaluate(*description.time, input.parameters, title + "about: time") : duration;
+    if (!(reached.time >= 0.0 && reached.time <= duration))
+      throw InvalidInput(description.time->where,
+                         fmt::format("{}about: time must lie within the {} s of \"{}\", got {}", title, duration,
+                                     analysis.name, reached.time));
+    return reached;
+  }
+  throw InvalidInput(description.analysis_where,
+                     fmt::format("{}about names \"{}\", which is no transient of this study{}", title,
+                                 description.analysis, suggestion(description.analysis, known)));
+}
+
+class Listener final : public integrate::Observer {
+ public:
+  explicit Listener(RunContext& context) : context_(context) {}
+  bool accepted(const system::State&, const system::State& after) override {
+    if (++steps_ % 64 == 0) context_.progress.advance(after.t);
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+
+ private:
+  RunContext& context_;
+  long steps_ = 0;
+};
+
+/// Marches to the configuration that is asked for, and holds it still. What went wrong stands in the report.
+system::State reach(const std::string& name, const MechanismModesPlan::Reached& reached,
+                    const system::Mechanism& mechanism, RunContext& context, RunReport& report) {
+  MechanismMarch march(reached.motion, mechanism);
+  Listener listener(context);
+  context.progress.begin(name, reached.time, "s of motion");
+  const integrate::AdaptiveReport marched = march.go_to(reached.time, &listener, nullptr);
+  context.progress.advance(march.state().t);
+  context.progress.end();
+  if (marched.march.end == integrate::MarchEnd::failed) {
+    report.status = RunStatus::failed;
+    report.message = march.failure(marched);
+  } else if (march.state().t < reached.time) {
+    report.status = RunStatus::interrupted;
+    report.message = fmt::format("interrupted at t = {} s of {} s", march.state().t, reached.time);
+  }
+  if (!report.message.empty()) return march.state();
+  if (!reached.settles) {
+    system::State held = march.state();
+    std::fill(held.rubbing.begin(), held.rubbing.end(), model::friction_free);
+    return at_rest(held, mechanism, report.warnings);
+  }
+  const MechanismStatic found = equilibrium_near(march.state(), mechanism);
+  report.message = found.complaint(mechanism);
+  if (!report.message.empty()) report.status = RunStatus::failed;
+  return found.state;
+}
+
 }  // namespace
 
 MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location& where,
                                         const model::ModesDescription& description, const system::Mechanism& mechanism,
-                                        const numerics::Parameters& parameters) {
+                                        const StudyInput& input) {
+  const numerics::Parameters& parameters = input.parameters;
   const std::string title = "analysis \"" + name + "\": ";
   if (mechanism.size() > largest)
     throw InvalidInput(where, fmt::format("{}modes of a mechanism are found for up to {} coordinates, and it has {}; "
@@ -55,6 +123,11 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
     plan.modes.count = static_cast<Index>(count);
   }
   plan.modes.observed = observed_or_all(description.observe, mechanism);
+  if (description.about_reached) {
+    plan.reached = reached_by(title, *description.about_reached, mechanism, input);
+    plan.warnings = plan.reached->motion.warnings;
+    return plan;
+  }
   plan.state = assembled_start(where, mechanism, plan.warnings);
   if (!description.about_equilibrium) {
     plan.state = at_rest(plan.state, mechanism, plan.warnings);
@@ -70,11 +143,17 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
 
 RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan& plan,
                               const system::Mechanism& mechanism, RunContext& context) {
-  system::MechanismEquations equations(mechanism);
-  const Index count = plan.modes.count > 0 ? plan.modes.count : default_count;
-  const integrate::MechanismModes modes = integrate::modes_about(equations, plan.state, count);
   RunReport report;
   report.warnings = plan.warnings;
+  const system::State state = plan.reached ? reach(name, *plan.reached, mechanism, context, report) : plan.state;
+  if (!report.message.empty()) return report;
+  system::MechanismEquations equations(mechanism);
+  const Index count = plan.modes.count > 0 ? plan.modes.count : default_count;
+  const integrate::MechanismModes modes = integrate::modes_about(equations, state, count);
+  if (plan.reached)
+    report.findings.push_back(fmt::format("about {}where \"{}\" is at t = {} s",
+                                          plan.reached->settles ? "the equilibrium next to " : "",
+                                          plan.reached->analysis, plan.reached->time));
   report.statistics = {{"freedoms", std::to_string(modes.freedoms)},
                        {"residual_free", fmt::format("{:.1e}", modes.found.residual)}};
   constexpr double round_off = 1e-12;

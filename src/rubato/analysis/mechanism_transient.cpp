@@ -1,11 +1,7 @@
-#include <rubato/analysis/mechanism_failure.hpp>
 #include <rubato/analysis/mechanism_interpolation.hpp>
+#include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
-#include <rubato/integrate/adaptive_march.hpp>
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 
 #include <fmt/format.h>
 
@@ -134,44 +130,27 @@ void report_events(const std::vector<integrate::LockEvent>& events, const system
 RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
                         RunContext& context) {
   const TransientPlan& transient = plan.transient;
-  const AutomaticStep& step = *transient.automatic;
-  const auto& alpha = std::get<integrate::GeneralizedAlpha>(transient.method.formula);
-  integrate::NewtonPlan newton;
-  newton.projects_velocities =
-      plan.project_velocities || std::holds_alternative<integrate::PiControl>(step.plan.controller);
-  newton.avoids_singular_ends = !std::holds_alternative<integrate::FixedStep>(step.plan.controller);
-  const auto stepper = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
-  const auto estimator = integrate::make_estimator(step.estimator, alpha, integrate::make_error_space(mechanism),
-                                                   transient.start, transient.duration);
-  constexpr double resolution = 1e-12;
-  integrate::MechanismTimeline timeline(mechanism, resolution * transient.duration);
+  MechanismMarch march(plan, mechanism);
   MechanismRecorder recorder(name, plan, mechanism, context.sink);
-  MechanismObserver observer(transient, mechanism, recorder, timeline, context);
-  system::State state = transient.start;
-  const bool is_fixed = std::holds_alternative<integrate::FixedStep>(step.plan.controller);
-  if (is_fixed) {  // with steps that change it is carried over by the march
-    system::MechanismEquations equations(mechanism);
-    integrate::shift_acceleration(equations, state, stepper->shift() * step.plan.first);
-  }
+  MechanismObserver observer(transient, mechanism, recorder, march.timeline(), context);
   context.progress.begin(name, transient.duration, "s of motion");
-  observer.start(state);
+  observer.start(march.state());
   std::unique_ptr<StepRecorder> tries;
-  if (!is_fixed) tries = std::make_unique<StepRecorder>(name, step, context.sink);
-  const integrate::AdaptiveReport report =
-      integrate::march(*stepper, *estimator, step.plan, timeline, state, transient.duration, &observer, tries.get());
+  if (!march.has_equal_steps()) tries = std::make_unique<StepRecorder>(name, *transient.automatic, context.sink);
+  const integrate::AdaptiveReport report = march.go_to(transient.duration, &observer, tries.get());
+  const system::State& state = march.state();
   observer.finish(state);
   context.progress.end();
-  write_events(name, timeline.events(), mechanism, context.sink);
+  write_events(name, march.timeline().events(), mechanism, context.sink);
   RunReport run;
   run.statistics = statistics(report, state.t);
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
   run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
   run.warnings = plan.warnings;
-  report_events(timeline.events(), mechanism, run.findings);
+  report_events(march.timeline().events(), mechanism, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = failure_of(report.march, mechanism, state, timeline.chattering(),
-                             advice_on_smallest(step.plan, transient.duration));
+    run.message = march.failure(report);
   } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);

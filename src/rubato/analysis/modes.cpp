@@ -90,11 +90,11 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
                      const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
   const std::string title = "analysis \"" + name + "\": ";
   const Index n = system.size();
-  if (description.about_equilibrium)
-    throw InvalidInput(*description.about_equilibrium,
+  if (description.about_equilibrium || description.about_reached)
+    throw InvalidInput(description.about_reached ? description.about_reached->where : *description.about_equilibrium,
                        title +
-                           "about = \"static\" is for mechanisms; the modes of a structure are those of its linear "
-                           "model, whatever the loads");
+                           "\"about\" is for mechanisms; the modes of a structure are those of its linear model, "
+                           "whatever the loads and the motion");
   ModesPlan plan;
   plan.count = std::min(n, default_count);
   if (description.count) {

@@ -198,7 +198,7 @@ AnalysisOutline check_mechanism(const model::AnalysisDescription& analysis, cons
     return {"static equilibrium of a mechanism", 100.0 * static_cast<double>(mechanism.size())};
   }
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task)) {
-    (void)plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input.parameters);
+    (void)plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input);
     return {"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(mechanism.size())};
   }
   refuse_of_mechanism(analysis);
@@ -215,8 +215,8 @@ RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, con
     return run_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism, context);
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
     return run_mechanism_modes(analysis.name,
-                               plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input.parameters),
-                               mechanism, context);
+                               plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input), mechanism,
+                               context);
   refuse_of_mechanism(analysis);
 }
 

@@ -139,11 +139,28 @@ MethodStudyDescription read_method_study(TomlReader& reader) {
   return study;
 }
 
+/// { analysis = "NAME", time = 1.2, static = true }
+ReachedDescription read_reached(TomlReader& reader) {
+  ReachedDescription reached;
+  auto inner = reader.optional_table("about", fmt::format("{}: about", reader.what()));
+  reached.where = inner->where();
+  reached.analysis = inner->text("analysis");
+  reached.analysis_where = inner->where("analysis");
+  reached.time = inner->optional_quantity("time");
+  reached.settles = inner->optional_bool("static").value_or(false);
+  inner->finish();
+  return reached;
+}
+
 ModesDescription read_modes(TomlReader& reader) {
   ModesDescription modes;
   modes.count = reader.optional_quantity("count");
   modes.observe = read_observe(reader);
-  if (reader.optional_word("about", {"given", "static"}) == "static") modes.about_equilibrium = reader.where("about");
+  const toml::node* about = reader.node("about");
+  if (about && about->is_table())
+    modes.about_reached = read_reached(reader);
+  else if (reader.optional_word("about", {"given", "static"}) == "static")
+    modes.about_equilibrium = reader.where("about");
   return modes;
 }
 

@@ -317,10 +317,19 @@ struct FrequencyResponseDescription {
   std::optional<WaveformsDescription> waveforms;
 };
 
+/// A configuration that a transient of the same study reaches.
+struct ReachedDescription {
+  std::string analysis;
+  Location analysis_where, where;
+  std::optional<Quantity> time;  ///< [s]; its end unless given
+  bool settles = false;          ///< go on to the static equilibrium next to it
+};
+
 struct ModesDescription {
   std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
   std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
   std::optional<Location> about_equilibrium;                   ///< of a mechanism: where that was asked for
+  std::optional<ReachedDescription> about_reached;             ///< of a mechanism
 };
 
 struct DamperCurveDescription {
