@@ -240,7 +240,7 @@ TEST(ReadSpaceMechanism, NamesWhatIsWrongWithJoints) {
   EXPECT_THAT(verdict_of_joint("type = \"ball\"\nat = [2, 0, 0]"), HasSubstr("spherical"));
   EXPECT_THAT(
       verdict_of_joint("type = \"cylindrical\"\nat = [2, 0, 0]\naxis = [1, 0, 0]\nlock = { at = 1, kind = \"stop\" }"),
-      HasSubstr("\"lock\" belongs to a revolute, prismatic or screw joint, and this one is cylindrical"));
+      HasSubstr("\"lock\" belongs to a revolute, prismatic, screw or strut joint, and this one is cylindrical"));
 }
 
 TEST(ReadSpaceMechanism, KeepsPlaneAndSpaceApart) {

@@ -35,6 +35,23 @@ std::vector<std::string> singular_joints(const system::Mechanism& mechanism, con
   return joints;
 }
 
+/// What is no number a step ahead, in the motion that the last state has; empty: nothing.
+std::string non_finite_part_ahead(const integrate::MarchReport& report, const system::Mechanism& mechanism,
+                                  const system::State& state) {
+  system::MechanismEquations equations(mechanism);
+  system::State ahead = state;
+  std::string part;
+  for (const double steps : {1.0, 2.0, 10.0}) {  // one may end at the very edge of a law
+    const double length = steps * report.failed_step;
+    ahead.t = report.failed_at + length;
+    mechanism.retract(state.q, length * state.v, ahead.q);
+    equations.go_to(ahead, model::Side::left);
+    part = equations.non_finite_part();
+    if (!part.empty()) break;
+  }
+  return part;
+}
+
 /// @param guard  of the timeline: the locks, then the frictions
 std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
   const auto& model = mechanism.model();
@@ -45,8 +62,8 @@ std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
 
 }  // namespace
 
-std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
-                       Index chattering, const std::string& advice_on_step) {
+std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism,
+                       const system::State& state, Index chattering, const std::string& advice_on_step) {
   const std::string at =
       report.step.worst >= 0
           ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
@@ -56,13 +73,6 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
     case integrate::StepOutcome::not_finite:
       what = "a number that is not finite appeared" + at;
       remedy = "look at the loads and laws that act there at that time";
-      {
-        system::MechanismEquations equations(mechanism);
-        state.t = report.failed_at + report.failed_step;
-        equations.go_to(state, model::Side::left);
-        const std::string part = equations.non_finite_part();
-        if (!part.empty()) remedy = "it comes from " + part;
-      }
       break;
     case integrate::StepOutcome::not_converged:
       what = "Newton's method found no solution" + at;
@@ -94,6 +104,10 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
   }
   using integrate::StepOutcome;
   const StepOutcome outcome = report.step.outcome;
+  if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || outcome == StepOutcome::too_small) {
+    const std::string part = non_finite_part_ahead(report, mechanism, state);
+    if (!part.empty()) return fmt::format("at t = {} s {} has no finite value from there on", report.failed_at, part);
+  }
   if (outcome == StepOutcome::not_converged || outcome == StepOutcome::too_small || outcome == StepOutcome::singular) {
     const std::vector<std::string> joints = singular_joints(mechanism, state);
     if (!joints.empty()) {

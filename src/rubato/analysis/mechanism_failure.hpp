@@ -12,7 +12,7 @@ namespace rubato::analysis {
 /// @param state           the last accepted one
 /// @param chattering      the guard that changed without end; -1: none
 /// @param advice_on_step  what helps where the error asks for a step below the smallest
-std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism, system::State state,
-                       Index chattering, const std::string& advice_on_step);
+std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism,
+                       const system::State& state, Index chattering, const std::string& advice_on_step);
 
 }  // namespace rubato::analysis

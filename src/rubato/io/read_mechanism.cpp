@@ -151,12 +151,12 @@ FrictionDescription read_friction(TomlReader& reader, bool is_revolute) {
 
 /// The keys that belong to one type of joint each; others are refused with the types that take them.
 void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
-  const std::vector<std::string> of_one_coordinate{"revolute", "prismatic", "screw"};
+  const std::vector<std::string> of_one_coordinate{"revolute", "prismatic", "screw", "strut"};
   const std::map<std::string, std::vector<std::string>> takers{
       {"angle", {"revolute", "screw"}},
       {"moment", {"revolute", "screw"}},
       {"displacement", {"prismatic"}},
-      {"force", {"prismatic"}},
+      {"force", {"prismatic", "strut"}},
       {"axis", {"revolute", "prismatic", "cylindrical", "universal", "planar", "screw"}},
       {"second_axis", {"universal"}},
       {"lead", {"screw"}},
@@ -165,7 +165,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
-      {"friction", {"revolute", "prismatic"}},
+      {"friction", {"revolute", "prismatic", "strut"}},
       {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
@@ -178,7 +178,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
 }
 
 const std::vector<std::string> joint_types{"rigid",     "revolute",  "prismatic", "distance", "cylindrical",
-                                           "spherical", "universal", "planar",    "screw"};
+                                           "spherical", "universal", "planar",    "screw",    "strut"};
 
 /// A formula of t, or { table = "file.csv" }.
 DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& folder) {
@@ -196,6 +196,25 @@ DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& fol
   inner->finish();
   drive.law = table;
   return drive;
+}
+
+/// The law of the moment or force: a formula, or { table = "file.csv" } over the coordinate.
+void read_law(TomlReader& reader, const std::filesystem::path& folder, JointDescription& joint) {
+  const bool is_strut = joint.type == JointDescription::Type::strut;
+  const bool slides = is_strut || joint.type == JointDescription::Type::prismatic;
+  const std::string key = slides ? "force" : "moment";
+  const toml::node* node = slides ? reader.node("force") : reader.node("moment");
+  if (!node || !node->is_table()) {
+    joint.drive = slides ? reader.optional_quantity("force") : reader.optional_quantity("moment");
+    return;
+  }
+  auto inner = reader.optional_table(key, fmt::format("{}: {}", reader.what(), key));
+  const TableOver over = slides ? TableOver{is_strut ? "length" : "displacement", "m"} : TableOver{"angle", "rad"};
+  joint.drive_table = read_table(inner->text("table"), folder, inner->where("table"), {slides ? "N" : "N m"}, over);
+  const auto beyond = inner->optional_word("beyond", {"error", "zero", "hold"});
+  if (beyond == "zero") joint.drive_table->beyond = TableDescription::Beyond::zero;
+  if (beyond == "hold") joint.drive_table->beyond = TableDescription::Beyond::hold;
+  inner->finish();
 }
 
 JointDescription read_joint(TomlReader& reader, std::size_t number, const std::filesystem::path& folder) {
@@ -228,7 +247,7 @@ JointDescription read_joint(TomlReader& reader, std::size_t number, const std::f
     throw InvalidInput(reader.where(), fmt::format("{} lacks the key \"axis\"", reader.what()));
   }
   joint.value = is_prismatic ? reader.optional_quantity("displacement") : reader.optional_quantity("angle");
-  joint.drive = is_prismatic ? reader.optional_quantity("force") : reader.optional_quantity("moment");
+  read_law(reader, folder, joint);
   if (reader.has("drive")) joint.motion = read_drive(reader, folder);
   joint.length = reader.optional_quantity("length");
   joint.stiffness = reader.optional_quantity("stiffness");

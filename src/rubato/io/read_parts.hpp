@@ -47,10 +47,16 @@ std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReade
 model::CaseSweepDescription read_cases(const std::string& file, const std::filesystem::path& folder,
                                        const Location& where);
 
-/// A CSV file of two columns, time and value; a first line that is no number is a header; `#` begins a comment. Units
-/// in square brackets of the header must be [s] and one of `units`.
+/// What the first column of a table is.
+struct TableOver {
+  std::string name = "time";
+  std::string unit = "s";
+};
+
+/// A CSV file of two columns, time (or another) and value; a first line that is no number is a header; `#` begins a
+/// comment. Units in square brackets of the header must be that of the first column and one of `units`.
 model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
-                                   const std::vector<std::string>& units);
+                                   const std::vector<std::string>& units, const TableOver& over = {});
 
 /// A Matrix Market file: coordinate or array format, real or integer, general or symmetric; symmetric in value.
 model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,

@@ -46,7 +46,7 @@ std::string plain_unit(std::string_view unit) {
   return plain;
 }
 
-void require_unit(std::string_view head, const char* column, const std::vector<std::string>& units,
+void require_unit(std::string_view head, const std::string& column, const std::vector<std::string>& units,
                   const Location& here) {
   const auto open = head.find('['), close = head.find(']', open == std::string_view::npos ? 0 : open);
   if (open == std::string_view::npos || close == std::string_view::npos) return;
@@ -61,10 +61,10 @@ void require_unit(std::string_view head, const char* column, const std::vector<s
 }  // namespace
 
 model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
-                                   const std::vector<std::string>& units) {
+                                   const std::vector<std::string>& units, const TableOver& over) {
   std::string text = read_text(folder / file, file, where, largest_table, "the table");
   const std::string place = file_in(folder, file);
-  refuse_binary(text, place, "a table is a text of two columns, time and value");
+  refuse_binary(text, place, fmt::format("a table is a text of two columns, {} and value", over.name));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // spreadsheets write this mark
   model::TableDescription table;
   table.file = file;
@@ -85,20 +85,20 @@ model::TableDescription read_table(const std::string& file, const std::filesyste
     const bool is_header = header_allowed && !is_pair && !begins_like_a_number(line);
     header_allowed = false;
     if (is_header) {
-      require_unit(line.substr(0, separator), "time", {"s"}, here);
+      require_unit(line.substr(0, separator), over.name, {over.unit}, here);
       if (separator != std::string_view::npos) require_unit(line.substr(separator + 1), "value", units, here);
       continue;
     }
     if (!is_pair)
-      throw InvalidInput(here, fmt::format("a row must be two numbers, time and value, with a comma between them; got "
+      throw InvalidInput(here, fmt::format("a row must be two numbers, {} and value, with a comma between them; got "
                                            "\"{}\"",
-                                           line.substr(0, 60)));
+                                           over.name, line.substr(0, 60)));
     if (!std::isfinite(time) || !std::isfinite(value))
       throw InvalidInput(here, fmt::format("a number is not finite: \"{}\"", line.substr(0, 60)));
     if (!table.times.empty() && time < table.times.back())
-      throw InvalidInput(here, fmt::format("times must not fall: {} after {}", time, table.times.back()));
+      throw InvalidInput(here, fmt::format("{}s must not fall: {} after {}", over.name, time, table.times.back()));
     if (table.times.size() > 1 && time == table.times.back() && time == table.times[table.times.size() - 2])
-      throw InvalidInput(here, fmt::format("more than two rows at the time {}; two are a jump", time));
+      throw InvalidInput(here, fmt::format("more than two rows at the {} {}; two are a jump", over.name, time));
     table.times.push_back(time);
     table.values.push_back(value);
   }

@@ -20,7 +20,9 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (d.matrices) refuse(d.matrices->where, "[matrices]", "describe the structure by nodes and beams");
   if (!d.coordinates.empty())
     refuse(d.coordinates.front().where, "a [[coordinate]]", "take a [[node]] with a [[mass]]");
-  if (!d.sliders.empty()) refuse(d.sliders.front().where, "a [[slider]]", "give a joint damping instead");
+  if (!d.sliders.empty())
+    refuse(d.sliders.front().where, "a [[slider]]",
+           "give a joint friction, or take a joint of type \"strut\" with friction");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (const auto* modal = std::get_if<ModalDamping>(&d.damping)) refuse(modal->where, "[damping]", "take a [[damper]]");
   if (const auto* rayleigh = std::get_if<RayleighDamping>(&d.damping))
@@ -33,7 +35,8 @@ void refuse_foreign_parts(const ModelDescription& d) {
     refuse(d.prescribed.front().where, "a [[displacement]]", "drive a joint between the ground and the node");
   if (!d.held_forces.empty()) refuse(d.held_forces.front().where, "a held force", "give the force a law of t");
   if (!d.structure.trusses.empty())
-    refuse(d.structure.trusses.front().where, "a [[truss]]", "take a joint of type \"distance\", or a beam");
+    refuse(d.structure.trusses.front().where, "a [[truss]]",
+           "take a joint of type \"distance\" or \"strut\", or a beam");
   for (const BeamDescription& beam : d.structure.beams)
     if (beam.formulation != BeamDescription::Formulation::geometrically_exact)
       refuse(beam.where, fmt::format("the beam from \"{}\" to \"{}\"", beam.nodes[0], beam.nodes[1]),

@@ -79,6 +79,18 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
   return law;
 }
 
+CoordinateTable table_of(const JointDescription& joint, const std::string& part) {
+  const TableDescription& table = *joint.drive_table;
+  for (std::size_t i = 1; i < table.times.size(); ++i)
+    if (!(table.times[i] > table.times[i - 1]))
+      throw InvalidInput(table.where, fmt::format("{}: the table \"{}\" jumps at {}; give its rows a way between", part,
+                                                  table.file, table.times[i]));
+  const auto beyond = table.beyond == TableDescription::Beyond::hold   ? CoordinateTable::Beyond::hold
+                      : table.beyond == TableDescription::Beyond::zero ? CoordinateTable::Beyond::zero
+                                                                       : CoordinateTable::Beyond::error;
+  return make_table(table.times, table.values, beyond);
+}
+
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                    const FreeCoordinate& s, int pressing_rows) {
   const FrictionDescription& given = *joint.friction;
@@ -91,13 +103,18 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
   JointFriction friction;
   friction.name = joint.name;
   friction.s = s;
-  friction.joint = static_cast<int>(assembly.mechanism.joints.size()) - 1;
+  if (pressing_rows > 0) friction.joint = static_cast<int>(assembly.mechanism.joints.size()) - 1;
   friction.coefficient = assembly.at_least_zero(given.coefficient, part + ": friction: coefficient");
   if (given.radius) friction.coefficient *= assembly.positive(*given.radius, part + ": friction: radius");
   if (given.preload)
     friction.preload = assembly.at_least_zero(*given.preload, part + ": friction: preload");
-  else
+  else if (pressing_rows > 0)
     friction.pressing_rows = pressing_rows;
+  else
+    throw InvalidInput(given.where,
+                       fmt::format("{}: friction: it holds nothing, and no reaction presses on what slides; "
+                                   "give \"preload\" [N]",
+                                   part));
   assembly.mechanism.add_friction(std::move(friction));
 }
 

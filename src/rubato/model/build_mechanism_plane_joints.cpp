@@ -32,10 +32,12 @@ std::array<double, 2> axis_of(const MechanismAssembly& assembly, const JointDesc
 void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                      PlaneCoordinate s) {
   Mechanism& mechanism = assembly.mechanism;
-  const double value = start_value(assembly, joint, part, s.is_angle());
-  s.zero = s.value(assembly.start.data()) - value;
+  const bool is_length = s.kind == PlaneCoordinate::Kind::length;
+  const double now = s.value(assembly.start.data());
+  const double value = is_length ? now : start_value(assembly, joint, part, s.is_angle());
+  s.zero = now - value;
   mechanism.joint_coordinates.push_back({joint.name, s});
-  if (joint.friction) take_friction(assembly, joint, part, s, s.is_angle() ? 2 : 1);
+  if (joint.friction) take_friction(assembly, joint, part, s, is_length ? 0 : s.is_angle() ? 2 : 1);
   take_laws(assembly, joint, part, s, value, take_lock(assembly, joint, part, s, value));
 }
 
@@ -63,6 +65,12 @@ void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint
       mechanism.joints.push_back(make_plane_distance(joint.name, a, b, length_of(assembly, joint, part, places)));
       ++assembly.elements;
       return;
+    case Type::strut:
+      (void)length_of(assembly, joint, part, places);
+      mechanism.lines.push_back({DrawnLine::Kind::link, end_of(a), end_of(b)});
+      s.kind = PlaneCoordinate::Kind::length;
+      ++assembly.elements;
+      break;
     case Type::revolute:
       if (!joint.axis.empty())
         throw InvalidInput(joint.axis_where, part + ": a revolute joint in the plane turns about z; remove \"axis\"");

@@ -22,16 +22,18 @@ struct SpaceJointPlaces {
 
 /// A node that does not turn has no axes with which a joint could do more than hold its place.
 void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
-  const bool holds_points_only = joint.type == Type::spherical || joint.type == Type::distance;
+  const bool holds_points_only =
+      joint.type == Type::spherical || joint.type == Type::distance || joint.type == Type::strut;
   for (std::size_t end = 0; end < 2; ++end) {
     const Index node = built.places.node[end];
     if (assembly.has_axes(node)) continue;
     const bool is_at_node = built.places.at[end] == assembly.position(node);
     if (holds_points_only && is_at_node) continue;
-    throw InvalidInput(joint.between_where[end],
-                       fmt::format("{} joins \"{}\", a mass that does not turn, by more than its place; give its "
-                                   "[[mass]] \"inertia\", or take a spherical or distance joint at the node itself",
-                                   built.part, joint.between[end]));
+    throw InvalidInput(
+        joint.between_where[end],
+        fmt::format("{} joins \"{}\", a mass that does not turn, by more than its place; give its "
+                    "[[mass]] \"inertia\", or take a spherical or distance joint, or a strut, at the node itself",
+                    built.part, joint.between[end]));
   }
 }
 
@@ -84,11 +86,13 @@ SpaceCoordinate way_between(const SpaceFrame& first, const SpaceFrame& second) {
 void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built,
                      SpaceCoordinate s, bool has_laws) {
   Mechanism& mechanism = assembly.mechanism;
-  const double value = has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
-  s.zero = s.value(assembly.start.data()) - value;
+  const bool is_length = s.kind == SpaceCoordinate::Kind::length;
+  const double now = s.value(assembly.start.data());
+  const double value = is_length ? now : has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
+  s.zero = now - value;
   mechanism.space_coordinates.push_back({joint.name, s});
   // All of the force of a hinge presses on its pin; of a slide what is across its way.
-  if (joint.friction) take_friction(assembly, joint, built.part, s, s.is_angle() ? 3 : 2);
+  if (joint.friction) take_friction(assembly, joint, built.part, s, is_length ? 0 : s.is_angle() ? 3 : 2);
   if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
 }
 
@@ -119,6 +123,7 @@ SpaceJointKind kind_of(Type type) {
     case Type::rigid:
     case Type::distance:
     case Type::screw:
+    case Type::strut:
       break;
   }
   return SpaceJointKind::rigid;
@@ -129,7 +134,8 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
   built.part = fmt::format("joint \"{}\"", joint.name);
   built.places = take_places(assembly, joint, built.part);
   require_axes(assembly, joint, built);
-  const bool has_no_axis = joint.type == Type::rigid || joint.type == Type::spherical || joint.type == Type::distance;
+  const bool has_no_axis = joint.type == Type::rigid || joint.type == Type::spherical || joint.type == Type::distance ||
+                           joint.type == Type::strut;
   Matrix3 axes = Matrix3::Identity();
   const std::vector<double>& q = assembly.start;
   if (joint.type == Type::universal) {
@@ -153,6 +159,14 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   const auto& [part, places, first, second] = built;
   Mechanism& mechanism = assembly.mechanism;
   const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
+  if (joint.type == Type::strut) {
+    (void)length_of(assembly, joint, part, places);
+    mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
+    ++assembly.elements;
+    take_coordinate(assembly, joint, built,
+                    {SpaceCoordinate::Kind::length, first.point, second.point, PointDistance{}, -1, 0.0}, true);
+    return;
+  }
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});
   if (joint.type == Type::distance) {
     mechanism.lines.push_back({DrawnLine::Kind::link, one, two});

@@ -117,6 +117,7 @@ int Mechanism::add_lock(Lock lock) {
 int Mechanism::add_friction(JointFriction friction) {
   const int index = static_cast<int>(frictions.size());
   friction.sticking_joint = static_cast<int>(joints.size());
+  if (friction.joint < 0) friction.joint = friction.sticking_joint;
   std::visit(
       [&](const auto& s) {
         using Coordinate = std::decay_t<decltype(s)>;

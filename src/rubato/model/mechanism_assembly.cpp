@@ -137,7 +137,8 @@ JointPlaces take_places(MechanismAssembly& assembly, const JointDescription& joi
   if (places.node[0] == places.node[1])
     throw InvalidInput(joint.between_where[1], fmt::format("{} joins \"{}\" with itself", part, joint.between[1]));
   // A joint sits at its node; a body has many places for one.
-  const bool is_distance = joint.type == JointDescription::Type::distance;
+  const bool is_distance =
+      joint.type == JointDescription::Type::distance || joint.type == JointDescription::Type::strut;
   const auto is_node = [&](std::size_t i) { return !places.is_ground(i) && !assembly.is_body(joint.between[i]); };
   if (!joint.at.empty())
     places.at[0] = assembly.point(joint.at, joint.at_where, part + ": at");

@@ -59,7 +59,7 @@ struct FrictionDescription {
 };
 
 struct JointDescription {
-  enum class Type { rigid, revolute, prismatic, distance, cylindrical, spherical, universal, planar, screw };
+  enum class Type { rigid, revolute, prismatic, distance, cylindrical, spherical, universal, planar, screw, strut };
   std::string name;
   Type type = Type::revolute;
   std::array<std::string, 2> between;  ///< nodes, bodies or "ground"
@@ -75,7 +75,9 @@ struct JointDescription {
   std::optional<Quantity> value;   ///< of its angle or displacement in the configuration given [rad] or [m]
   std::optional<Quantity> length;  ///< of a distance [m]; as the points lie unless given
   std::optional<DriveDescription> motion;
-  std::optional<Quantity> drive;  ///< moment or force, + on the second; may use `angle` or `displacement`, `rate`, `t`
+  /// Moment or force, + on the second; may use `angle`, `displacement` or `length`, `rate`, `t`.
+  std::optional<Quantity> drive;
+  std::optional<TableDescription> drive_table;       ///< instead, over the coordinate, whose values stand as its times
   std::optional<Quantity> stiffness, rest, damping;  ///< of a spring and a damper on its coordinate
   std::optional<LockDescription> lock;
   std::optional<FrictionDescription> friction;

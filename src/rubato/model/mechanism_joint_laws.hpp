@@ -36,6 +36,9 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
 AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                  const FreeCoordinate& s, double value);
 
+/// The table of a joint's moment or force over its coordinate.
+CoordinateTable table_of(const JointDescription& joint, const std::string& part);
+
 /// The drive, the law of a moment or force, the spring and the damper.
 /// @param s      with its zero
 /// @param value  of s in the configuration given
@@ -50,14 +53,14 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
         joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;
     try {
       elements.push_back(make_joint_drive(joint.name, s, text, assembly.parameters, when));
-      if (auto formula =
-              numerics::switching_formula(text, assembly.parameters, {s.is_angle() ? "angle" : "displacement", "rate"}))
+      if (auto formula = numerics::switching_formula(text, assembly.parameters, {s.name(), "rate"}))
         assembly.mechanism.joint_formulas.push_back(std::move(*formula));
     } catch (const InvalidInput& fault) {
       throw InvalidInput(joint.drive->where,
                          fmt::format("{}: {}: {}", part, s.is_angle() ? "moment" : "force", fault.message()));
     }
   }
+  if (joint.drive_table) elements.push_back(make_joint_table(joint.name, s, table_of(joint, part), when));
   if (joint.stiffness) {
     const double rest = joint.rest ? assembly.number(*joint.rest, part + ": rest") : value;
     elements.push_back(

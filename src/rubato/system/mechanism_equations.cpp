@@ -409,7 +409,7 @@ std::string MechanismEquations::non_finite_part() {
   for (const auto& element : elements_) {
     element->force(motion_, local_.data());
     for (std::size_t i = 0; i < element->places().size(); ++i)
-      if (!std::isfinite(local_[i])) return "the law of \"" + element->name() + "\"";
+      if (!std::isfinite(local_[i])) return "the law of \"" + element->name() + "\"" + element->domain();
     element->tangent(motion_, 1.0, 1.0, local_.data(), matrix_.data());
     for (std::size_t i = 0; i < element->places().size() * element->places().size(); ++i)
       if (!std::isfinite(matrix_[i])) return "the slope of the law of \"" + element->name() + "\"";

@@ -4,10 +4,14 @@
 
 #include <support/mechanism_differences.hpp>
 
+#include <cmath>
+#include <string>
+
 namespace rubato {
 namespace {
 
 using model::PlaneCoordinate;
+using Beyond = model::CoordinateTable::Beyond;
 using testing::free_plane_node;
 using testing::RandomMotion;
 
@@ -29,9 +33,12 @@ TEST_P(PlaneCoordinates, BearLawsWithConsistentTangents) {
   testing::expect_consistent_tangent(*spring, at, 10.0);
   testing::expect_force_of_energy(*spring, at, 10.0);
   testing::expect_consistent_tangent(*model::make_joint_damper("c", s, 2.0), at, 10.0);
-  const std::string name = kind == PlaneCoordinate::Kind::angle ? "angle" : "displacement";
-  testing::expect_consistent_tangent(
-      *model::make_joint_drive("f", s, "M * sin(" + name + ") - 0.3*rate^3 + t", {{"M", 2.0}}), at, 10.0);
+  const std::string law = "M * sin(" + std::string(s.name()) + ") - 0.3*rate^3 + t";
+  testing::expect_consistent_tangent(*model::make_joint_drive("f", s, law, {{"M", 2.0}}), at, 10.0);
+  const auto table =
+      model::make_joint_table("t", s, model::make_table({-9.0, 0.0, 9.0}, {3.0, -1.0, 2.0}, Beyond::error));
+  testing::expect_consistent_tangent(*table, at, 10.0);
+  testing::expect_force_of_energy(*table, at, 10.0);
 }
 
 TEST_P(PlaneCoordinates, AreHeldByALockWithTheSlopesOfItsConstraint) {
@@ -50,7 +57,26 @@ TEST_P(PlaneCoordinates, AreHeldByALockWithTheSlopesOfItsConstraint) {
 INSTANTIATE_TEST_SUITE_P(RandomStates, PlaneCoordinates,
                          ::testing::Combine(::testing::Range(1u, 5u),
                                             ::testing::Values(PlaneCoordinate::Kind::angle,
-                                                              PlaneCoordinate::Kind::displacement)));
+                                                              PlaneCoordinate::Kind::displacement,
+                                                              PlaneCoordinate::Kind::length)));
+
+// U = -(integral of F): over (-2, 0) F rises from -4 to 4, over (0, 1) it falls to -4 and has its lowest U in 0.5.
+TEST(CoordinateTables, KnowTheirPotential) {
+  const model::CoordinateTable table = model::make_table({-2.0, 0.0, 1.0}, {-4.0, 4.0, -4.0}, Beyond::hold);
+  EXPECT_EQ(table(0.5).force, 0.0);
+  EXPECT_EQ(table(0.5).potential, 0.0);
+  EXPECT_EQ(table(0.0).potential, 1.0);
+  EXPECT_EQ(table(-1.0).potential, 3.0);
+  EXPECT_EQ(table(-2.0).potential, 1.0);
+  EXPECT_EQ(table(-1.5).slope, 4.0);
+  EXPECT_EQ(table(2.0).force, -4.0);
+  EXPECT_EQ(table(2.0).potential, 5.0);
+  const model::CoordinateTable ends = model::make_table({-2.0, 0.0, 1.0}, {-4.0, 4.0, -4.0}, Beyond::zero);
+  EXPECT_EQ(ends(2.0).force, 0.0);
+  EXPECT_EQ(ends(2.0).potential, 1.0);
+  EXPECT_EQ(ends(1.0).force, -4.0);
+  EXPECT_TRUE(std::isnan(model::make_table({0.0, 1.0}, {0.0, 1.0}, Beyond::error)(1.1).force));
+}
 
 TEST(PlaneCoordinates, PushOnlyInThePhaseOfTheirLock) {
   const PlaneCoordinate s = coordinate(PlaneCoordinate::Kind::angle);

@@ -13,17 +13,20 @@ namespace rubato {
 namespace {
 
 using model::SpaceCoordinate;
+using Kind = SpaceCoordinate::Kind;
 using numerics::Rotation;
 using numerics::Vector3;
 using testing::SpaceMotion;
 
-SpaceCoordinate coordinate(SpaceCoordinate::Kind kind) {
+SpaceCoordinate coordinate(Kind kind) {
   SpaceCoordinate s;
   s.kind = kind;
   s.first = {testing::free_space_node(0), {0.3, -0.2, 0.4}};
   s.second = {testing::free_space_node(1), {-0.1, 0.5, 0.2}};
-  if (kind == SpaceCoordinate::Kind::angle)
+  if (kind == Kind::angle)
     s.row = model::TurnAngle{Vector3::UnitX(), Vector3::UnitY(), Vector3(0.6, 0.8, 0.0)};
+  else if (kind == Kind::length)
+    s.row = model::PointDistance{};
   else
     s.row = model::BodyGap{Vector3(0.0, 0.6, 0.8)};
   s.zero = 0.1;
@@ -32,7 +35,7 @@ SpaceCoordinate coordinate(SpaceCoordinate::Kind kind) {
 
 TEST(SpaceCoordinates, MakeForcesWithConsistentTangents) {
   const numerics::Parameters none;
-  for (const auto kind : {SpaceCoordinate::Kind::angle, SpaceCoordinate::Kind::displacement}) {
+  for (const auto kind : {Kind::angle, Kind::displacement, Kind::length}) {
     const SpaceCoordinate s = coordinate(kind);
     const auto spring = model::make_joint_spring("s", s, 3.0, 0.2), damper = model::make_joint_damper("d", s, 0.7);
     const auto drive = model::make_joint_drive("m", s, "2*rate + t", none);
@@ -48,7 +51,7 @@ TEST(SpaceCoordinates, MakeForcesWithConsistentTangents) {
 }
 
 TEST(SpaceCoordinates, AreHeldWithConsistentDerivatives) {
-  for (const auto kind : {SpaceCoordinate::Kind::angle, SpaceCoordinate::Kind::displacement}) {
+  for (const auto kind : {Kind::angle, Kind::displacement, Kind::length}) {
     const SpaceCoordinate s = coordinate(kind);
     const auto lock = model::make_lock_joint("lock", s, 0.4, 0);
     const model::StickingJoint<SpaceCoordinate> stuck("stuck", s, 0);
@@ -67,7 +70,7 @@ TEST(SpaceCoordinates, AreHeldWithConsistentDerivatives) {
 
 // s'' by differences of s' along a motion with constant accelerations, which err by the square of the step.
 TEST(SpaceCoordinates, TellTheirRates) {
-  for (const auto kind : {SpaceCoordinate::Kind::angle, SpaceCoordinate::Kind::displacement}) {
+  for (const auto kind : {Kind::angle, Kind::displacement, Kind::length}) {
     const SpaceCoordinate s = coordinate(kind);
     SpaceMotion at(2, 7, 0.5);
     std::vector<double> acceleration(at.padded.size(), 0.0);

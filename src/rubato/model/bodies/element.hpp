@@ -21,6 +21,8 @@ class Element {
 
   const std::string& name() const { return name_; }
   const std::vector<Index>& places() const { return places_; }  ///< [k]
+  /// Where its law ends, to be said after its name where it has no number.
+  virtual std::string domain() const { return {}; }
 
   /// Writes the force. @param force  [k]
   virtual void force(const Motion& motion, double* force) const = 0;

@@ -6,6 +6,8 @@
 #include <rubato/numerics/bound_formula.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -122,6 +124,31 @@ class Damper final : public CoordinateLaw<Coordinate> {
   double damping_;
 };
 
+/// The force that a table over s gives; elastic.
+template <class Coordinate>
+class TabulatedLaw final : public CoordinateLaw<Coordinate> {
+  using Base = CoordinateLaw<Coordinate>;
+  using Base::s_, Base::when_;
+
+ public:
+  TabulatedLaw(std::string name, const Coordinate& s, CoordinateTable table, const AtLock& when)
+      : Base(std::move(name), s, when), table_(std::move(table)) {}
+  std::unique_ptr<Element> clone() const override { return std::make_unique<TabulatedLaw>(*this); }
+  std::string domain() const override {
+    return fmt::format(", whose table reaches from {} to {}", table_.at.front(), table_.at.back());
+  }
+  double stored_energy(const Motion& motion) const override {
+    return when_.is_at_work(motion) ? table_(s_.value(motion.q)).potential : 0.0;
+  }
+
+ private:
+  double law(double s, double, double) const override { return table_(s).force; }
+  void law_slopes(double s, double, double, double& by_s, double&) const override { by_s = table_(s).slope; }
+  bool depends_on_rate() const override { return false; }
+
+  CoordinateTable table_;
+};
+
 template <class Coordinate>
 class Drive final : public CoordinateLaw<Coordinate> {
   using Base = CoordinateLaw<Coordinate>;
@@ -130,9 +157,8 @@ class Drive final : public CoordinateLaw<Coordinate> {
  public:
   Drive(std::string name, const Coordinate& s, std::string formula, numerics::Parameters parameters, const AtLock& when)
       : Base(std::move(name), s, when), text_(std::move(formula)), names_(std::move(parameters)) {
-    const bool is_angle = s.is_angle();
-    switches_ = numerics::switching_formula(text_, names_, {is_angle ? "angle" : "displacement", "rate"}).has_value();
-    names_.insert(names_.begin(), {{is_angle ? "angle" : "displacement", 0.0}, {"rate", 0.0}, {"t", 0.0}});
+    switches_ = numerics::switching_formula(text_, names_, {s.name(), "rate"}).has_value();
+    names_.insert(names_.begin(), {{s.name(), 0.0}, {"rate", 0.0}, {"t", 0.0}});
     for (const std::size_t i : numerics::parameters_used(text_, names_))
       if (i < uses_.size()) uses_[i] = true;
     bind();

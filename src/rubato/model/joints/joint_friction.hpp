@@ -30,7 +30,7 @@ struct JointFriction {
   FreeCoordinate s;
   double coefficient = 0.0;  ///< mu [-]; of an angle mu times the radius [m]
   double preload = 0.0;      ///< [N]
-  int joint = -1;            ///< whose parts rub, among the mechanism's joints
+  int joint = -1;            ///< whose parts rub, among the mechanism's joints; -1: of what constrains nothing
   int pressing_rows = 0;     ///< so many of its rows, the first ones, press with the norm of their multipliers
   int sticking_joint = -1;   ///< the constraint that holds it
 

@@ -1,5 +1,6 @@
 #include <rubato/model/joints/coordinate_law.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
+#include <rubato/model/joints/plane_length.hpp>
 
 #include <algorithm>
 
@@ -18,11 +19,13 @@ std::vector<Index> PlaneCoordinate::places() const {
 
 double PlaneCoordinate::value(const double* q) const {
   if (kind == Kind::angle) return q[along.second.node.q + 2] - q[along.first.node.q + 2] - zero;
+  if (kind == Kind::length) return PlaneLength(along.first, along.second, q).value() - zero;
   return along.at(q).value() - zero;
 }
 
 void PlaneCoordinate::slope(const double* q, double* slope) const {
   if (kind == Kind::displacement) return PlaneProjection::slope(along.at(q), slope);
+  if (kind == Kind::length) return PlaneLength(along.first, along.second, q).slope(slope);
   std::fill(slope, slope + k, 0.0);
   slope[2] = -1.0;
   slope[5] = 1.0;
@@ -30,6 +33,7 @@ void PlaneCoordinate::slope(const double* q, double* slope) const {
 
 void PlaneCoordinate::curvature(const double* q, double weight, double* curvature) const {
   if (kind == Kind::displacement) return PlaneProjection::curvature(along.at(q), weight, curvature);
+  if (kind == Kind::length) return PlaneLength(along.first, along.second, q).curvature(weight, curvature);
   std::fill(curvature, curvature + k * k, 0.0);
 }
 
@@ -73,6 +77,11 @@ std::unique_ptr<Element> make_joint_damper(std::string name, const PlaneCoordina
 std::unique_ptr<Element> make_joint_drive(std::string name, const PlaneCoordinate& s, const std::string& formula,
                                           const numerics::Parameters& parameters, const AtLock& when) {
   return std::make_unique<Drive<PlaneCoordinate>>(std::move(name), s, formula, parameters, when);
+}
+
+std::unique_ptr<Element> make_joint_table(std::string name, const PlaneCoordinate& s, CoordinateTable table,
+                                          const AtLock& when) {
+  return std::make_unique<TabulatedLaw<PlaneCoordinate>>(std::move(name), s, std::move(table), when);
 }
 
 std::unique_ptr<Joint> make_lock_joint(std::string name, const PlaneCoordinate& s, double at, int lock) {

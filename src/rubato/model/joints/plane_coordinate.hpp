@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/model/bodies/element.hpp>
+#include <rubato/model/joints/coordinate_table.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_projection.hpp>
 #include <rubato/numerics/expression.hpp>
@@ -11,16 +12,19 @@
 
 namespace rubato::model {
 
-/// The coordinate s that a joint in the plane leaves free: the angle between its nodes, or the way along a direction.
+/// The coordinate s that a joint in the plane leaves free: the angle between its nodes, the way along a direction, or
+/// the length from one point to another.
 struct PlaneCoordinate {
-  enum class Kind { angle, displacement };
+  enum class Kind { angle, displacement, length };
   Kind kind = Kind::angle;
-  PlaneProjection along;  ///< of an angle only the nodes are used
+  PlaneProjection along;  ///< of an angle only the nodes are used, of a length the points
   double zero = 0.0;      ///< subtracted from what the nodes say [rad] or [m]
 
   static constexpr int tangent_size = 6;
   static constexpr bool has_symmetric_curvature = true;
   bool is_angle() const { return kind == Kind::angle; }
+  /// As formulas call it.
+  const char* name() const { return is_angle() ? "angle" : kind == Kind::length ? "length" : "displacement"; }
   bool has_constant_slope() const { return is_angle(); }
 
   std::vector<Index> places() const;
@@ -48,11 +52,16 @@ std::unique_ptr<Element> make_joint_spring(std::string name, const PlaneCoordina
 std::unique_ptr<Element> make_joint_damper(std::string name, const PlaneCoordinate& s, double damping,
                                            const AtLock& when = {});
 
-/// A force on s by a formula of `angle` (or `displacement`), `rate` and `t`. Its slopes are central differences.
+/// A force on s by a formula of `angle` (or `displacement`, `length`), `rate` and `t`. Its slopes are central
+/// differences.
 /// Throws InvalidInput for a faulty formula.
 /// @param parameters  other names it may use
 std::unique_ptr<Element> make_joint_drive(std::string name, const PlaneCoordinate& s, const std::string& formula,
                                           const numerics::Parameters& parameters, const AtLock& when = {});
+
+/// A force on s by a table over s.
+std::unique_ptr<Element> make_joint_table(std::string name, const PlaneCoordinate& s, CoordinateTable table,
+                                          const AtLock& when = {});
 
 /// s = at while the lock is engaged; nothing while it is open. Row "lock" [N m] or [N].
 std::unique_ptr<Joint> make_lock_joint(std::string name, const PlaneCoordinate& s, double at, int lock);

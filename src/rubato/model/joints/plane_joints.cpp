@@ -1,4 +1,5 @@
 #include <rubato/model/joints/plane_joints.hpp>
+#include <rubato/model/joints/plane_length.hpp>
 #include <rubato/model/joints/plane_projection.hpp>
 
 #include <algorithm>
@@ -158,39 +159,28 @@ class Distance final : public PlaneJoint {
   std::unique_ptr<Joint> clone() const override { return std::make_unique<Distance>(*this); }
 
   void constraint(const Motion& motion, double* g, double* jacobian) const override {
-    write(first_.at(motion.q), second_.at(motion.q), g, jacobian);
+    write({first_, second_, motion.q}, g, jacobian);
   }
   void curvature(const Motion& motion, const double* multiplier, double* curvature) const override {
-    hessian(first_.at(motion.q), second_.at(motion.q), multiplier[0] * inverse_, curvature);
+    PlaneLength(first_, second_, motion.q).half_square_curvature(multiplier[0] * inverse_, curvature);
   }
   void linearise(const Motion& motion, const double* multiplier, double* g, double* jacobian,
                  double* curvature) const override {
-    const auto a = first_.at(motion.q), b = second_.at(motion.q);
-    write(a, b, g, jacobian);
-    hessian(a, b, multiplier[0] * inverse_, curvature);
+    const PlaneLength now(first_, second_, motion.q);
+    write(now, g, jacobian);
+    now.half_square_curvature(multiplier[0] * inverse_, curvature);
   }
   void second_rate(const Motion& motion, double* out) const override {
     double h[k * k];
-    hessian(first_.at(motion.q), second_.at(motion.q), inverse_, h);
+    PlaneLength(first_, second_, motion.q).half_square_curvature(inverse_, h);
     out[0] = along_velocity(motion, h);
   }
 
  private:
-  void write(const PlanePoint::Now& a, const PlanePoint::Now& b, double* g, double* jacobian) const {
-    const double dx = b.x - a.x, dy = b.y - a.y, ux = dx * inverse_, uy = dy * inverse_;
-    g[0] = 0.5 * (dx * ux + dy * uy - length_);
-    const double row[k] = {-ux, -uy, ux * a.arm_y - uy * a.arm_x, ux, uy, uy * b.arm_x - ux * b.arm_y};
-    std::copy(row, row + k, jacobian);
-  }
-  /// weight times the second derivatives of d . d / 2: those of d against d, and the slopes of d against each other.
-  static void hessian(const PlanePoint::Now& a, const PlanePoint::Now& b, double weight, double* h) {
-    const double dx = b.x - a.x, dy = b.y - a.y;
-    const double slope_x[k] = {-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y};
-    const double slope_y[k] = {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x};
-    for (int i = 0; i < k; ++i)
-      for (int j = 0; j < k; ++j) h[i * k + j] = weight * (slope_x[i] * slope_x[j] + slope_y[i] * slope_y[j]);
-    h[2 * k + 2] += weight * (dx * a.arm_x + dy * a.arm_y);
-    h[5 * k + 5] -= weight * (dx * b.arm_x + dy * b.arm_y);
+  void write(const PlaneLength& now, double* g, double* jacobian) const {
+    const double dx = now.dx(), dy = now.dy();
+    g[0] = 0.5 * (dx * dx * inverse_ + dy * dy * inverse_ - length_);
+    now.half_square_slope(inverse_, jacobian);
   }
 
   double length_, inverse_;

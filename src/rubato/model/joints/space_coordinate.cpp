@@ -81,6 +81,11 @@ std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinat
   return std::make_unique<Drive<SpaceCoordinate>>(std::move(name), s, formula, parameters, when);
 }
 
+std::unique_ptr<Element> make_joint_table(std::string name, const SpaceCoordinate& s, CoordinateTable table,
+                                          const AtLock& when) {
+  return std::make_unique<TabulatedLaw<SpaceCoordinate>>(std::move(name), s, std::move(table), when);
+}
+
 std::unique_ptr<Joint> make_lock_joint(std::string name, const SpaceCoordinate& s, double at, int lock) {
   return std::make_unique<LockJoint<SpaceCoordinate>>(std::move(name), s, at, lock);
 }

@@ -10,24 +10,27 @@
 
 namespace rubato::model {
 
-/// The coordinate s that a joint in space leaves free: the angle by which the second part has turned about the axis, or
-/// the way along it. Derivatives are by the increments of both nodes, rotations in body axes.
+/// The coordinate s that a joint in space leaves free: the angle by which the second part has turned about the axis,
+/// the way along it, or the length from one point to another. Derivatives are by the increments of both nodes,
+/// rotations in body axes.
 ///
 /// A rotation says its angle up to whole turns only. The turns are counted in the configuration: behind the numbers of
 /// the nodes stands, for each angle, the angle with all its turns, which retract() carries on by continuity. A step
 /// must not turn a joint by pi or more.
 struct SpaceCoordinate {
-  enum class Kind { angle, displacement };
+  enum class Kind { angle, displacement, length };
   static constexpr int tangent_size = 12;
   static constexpr bool has_symmetric_curvature = false;
 
   Kind kind = Kind::angle;
   SpacePoint first, second;
-  SpaceRow row;        ///< a TurnAngle, or a BodyGap
+  SpaceRow row;        ///< a TurnAngle, a BodyGap or a PointDistance
   Index counter = -1;  ///< of an angle: where in q its turns are counted
   double zero = 0.0;   ///< subtracted from what the nodes say [rad] or [m]
 
   bool is_angle() const { return kind == Kind::angle; }
+  /// As formulas call it.
+  const char* name() const { return is_angle() ? "angle" : kind == Kind::length ? "length" : "displacement"; }
   bool has_constant_slope() const { return false; }
   std::vector<Index> places() const;
   double value(const double* q) const;
@@ -51,6 +54,8 @@ std::unique_ptr<Element> make_joint_damper(std::string name, const SpaceCoordina
                                            const AtLock& when = {});
 std::unique_ptr<Element> make_joint_drive(std::string name, const SpaceCoordinate& s, const std::string& formula,
                                           const numerics::Parameters& parameters, const AtLock& when = {});
+std::unique_ptr<Element> make_joint_table(std::string name, const SpaceCoordinate& s, CoordinateTable table,
+                                          const AtLock& when = {});
 std::unique_ptr<Joint> make_lock_joint(std::string name, const SpaceCoordinate& s, double at, int lock);
 
 }  // namespace rubato::model

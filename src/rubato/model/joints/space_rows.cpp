@@ -108,6 +108,19 @@ void add_row_slope(const DistanceGap& row, const SpacePair& p, double weight, Su
   sum.template block<3, 3>(r2, r2) += share * twice_across(p.offset2, p.turn2.transpose() * p.between);
 }
 
+void evaluate_row(const PointDistance&, const SpacePair& p, SpaceValue& out) {
+  out.value = p.between.norm();
+  out.gradient = moves_of(p).transpose() * p.between / out.value;
+}
+
+template <class Sum>
+void add_row_slope(const PointDistance& row, const SpacePair& p, double weight, Sum& sum) {
+  SpaceValue now;
+  evaluate_row(row, p, now);
+  add_row_slope(DistanceGap{now.value}, p, weight, sum);
+  sum -= (weight / now.value) * now.gradient * now.gradient.transpose();
+}
+
 void evaluate_row(const TurnAngle& row, const SpacePair& p, SpaceValue& out) {
   SpaceValue cosine, sine;
   evaluate_row(Alignment{row.x, row.start}, p, cosine);
@@ -178,7 +191,7 @@ SpacePattern pattern_of(const SpaceRow& row, const SpacePoint& first, const Spac
     return pattern;
   }
   const bool turns_only = std::holds_alternative<Alignment>(row) || std::holds_alternative<TurnAngle>(row);
-  const bool is_distance = std::holds_alternative<DistanceGap>(row);
+  const bool is_distance = std::holds_alternative<DistanceGap>(row) || std::holds_alternative<PointDistance>(row);
   const bool sees_turn1 = !is_distance || has_arm1, sees_turn2 = turns_only || has_arm2;
   if (!turns_only) {
     move(x1, everywhere);

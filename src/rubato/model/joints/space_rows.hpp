@@ -48,13 +48,15 @@ struct Alignment {
 struct DistanceGap {
   double length;
 };
+/// How far the points are apart, |p2 - p1| [m].
+struct PointDistance {};
 /// The angle by which the second node has turned about an axis that both share, right-handed about x cross y: from x of
 /// the first node to `start` of the second, in (-pi, pi] [rad]. Directions of length 1, x and y at a right angle.
 struct TurnAngle {
   numerics::Vector3 x, y, start;
 };
 
-using SpaceRow = std::variant<WorldGap, BodyGap, Alignment, DistanceGap, TurnAngle>;
+using SpaceRow = std::variant<WorldGap, BodyGap, Alignment, DistanceGap, TurnAngle, PointDistance>;
 
 /// How much of a SpaceValue is asked for.
 enum class SpaceDetail { gradient, slope };
