@@ -185,8 +185,9 @@ TEST(DriveFault, NamesTheKeyAndTheRemedy) {
             std::string::npos);
   std::string rigid = driven_bar("\"t\"");
   rigid.replace(rigid.find("revolute"), 8, "rigid");
-  EXPECT_NE(verdict(rigid).find("\"drive\" belongs to a revolute, prismatic, screw or strut joint, and this one is rigid"),
-            std::string::npos)
+  EXPECT_NE(
+      verdict(rigid).find("\"drive\" belongs to a revolute, prismatic, screw or strut joint, and this one is rigid"),
+      std::string::npos)
       << verdict(rigid);
 }
 

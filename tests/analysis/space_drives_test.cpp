@@ -101,8 +101,9 @@ std::string verdict(const std::string& text) {
 }
 
 TEST(SpaceDriveFault, NamesTheJointsThatTakeADrive) {
-  EXPECT_THAT(verdict(centred("cylindrical\"", "\"t\"")),
-              HasSubstr("\"drive\" belongs to a revolute, prismatic, screw or strut joint, and this one is cylindrical"));
+  EXPECT_THAT(
+      verdict(centred("cylindrical\"", "\"t\"")),
+      HasSubstr("\"drive\" belongs to a revolute, prismatic, screw or strut joint, and this one is cylindrical"));
 }
 
 }  // namespace

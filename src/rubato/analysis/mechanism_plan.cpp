@@ -121,7 +121,7 @@ void refuse_unknown_reactions(const Location& where, system::MechanismEquations&
   for (const auto& friction : mechanism.model().frictions)
     for (Index i = 0; i < friction.pressing_rows; ++i) {
       // A row that can be moved alone is held by its joint alone.
-      const Index moved = mechanism.first_row(friction.joint) + i;
+      const Index moved = mechanism.first_row(friction.joint) + friction.first_pressing_row + i;
       motion.setZero();
       row.setZero();
       row[moved] = 1.0;

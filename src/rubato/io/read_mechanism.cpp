@@ -125,8 +125,10 @@ LockDescription read_lock(TomlReader& reader) {
   return lock;
 }
 
-/// @param is_revolute  takes the radius of its pin
-FrictionDescription read_friction(TomlReader& reader, bool is_revolute) {
+/// A joint that turns takes the radius at which it rubs.
+FrictionDescription read_friction(TomlReader& reader, JointDescription::Type type) {
+  const bool is_screw = type == JointDescription::Type::screw;
+  const bool turns = is_screw || type == JointDescription::Type::revolute;
   FrictionDescription friction;
   friction.where = reader.where();
   friction.coefficient = reader.quantity("coefficient");
@@ -136,17 +138,31 @@ FrictionDescription read_friction(TomlReader& reader, bool is_revolute) {
     throw InvalidInput(reader.where(),
                        fmt::format("{} needs either \"preload\" [N] or normal_load = \"reaction\"", reader.what()));
   friction.radius = reader.optional_quantity("radius");
-  if (is_revolute && !friction.radius) {
+  if (turns && !friction.radius) {
     reader.refuse_misspelling_of("radius");
     throw InvalidInput(reader.where(),
-                       fmt::format("{} lacks the key \"radius\", of the pin [m]: the moment is coefficient * load * "
-                                   "radius",
-                                   reader.what()));
+                       fmt::format("{} lacks the key \"radius\", of the {} [m]: the moment is coefficient * load * "
+                                   "radius{}",
+                                   reader.what(), is_screw ? "thread in the middle of its flanks" : "pin",
+                                   is_screw ? " / cos^2 of the lead angle" : ""));
   }
-  if (!is_revolute && friction.radius)
-    throw InvalidInput(friction.radius->where, fmt::format("{}: radius belongs to a revolute joint", reader.what()));
+  if (!turns && friction.radius)
+    throw InvalidInput(friction.radius->where,
+                       fmt::format("{}: radius belongs to a revolute or screw joint", reader.what()));
   reader.finish();
   return friction;
+}
+
+/// What rubs in a joint that takes no friction can be built of joints that do.
+std::string instead_of(const std::string& key, const std::string& type) {
+  if (key != "friction") return {};
+  const std::map<std::string, std::string> rows{{"cylindrical", "a revolute and a prismatic joint"},
+                                                {"spherical", "three revolute joints"},
+                                                {"universal", "two revolute joints"},
+                                                {"planar", "two prismatic joints and a revolute one"}};
+  const auto row = rows.find(type);
+  if (row == rows.end()) return "; nothing moves in it that could rub";
+  return fmt::format("; take {} in a row, with small bodies between them, each with its own friction", row->second);
 }
 
 /// The keys that belong to one type of joint each; others are refused with the types that take them.
@@ -165,15 +181,15 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
-      {"friction", {"revolute", "prismatic", "strut"}},
+      {"friction", of_one_coordinate},
       {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;
     const std::string last = types.size() > 1 ? " or " + types.back() : "";
-    throw InvalidInput(
-        reader.where(key),
-        fmt::format("{}: \"{}\" belongs to a {}{} joint, and this one is {}", reader.what(), key,
-                    fmt::join(types.begin(), types.end() - (types.size() > 1 ? 1 : 0), ", "), last, type));
+    throw InvalidInput(reader.where(key),
+                       fmt::format("{}: \"{}\" belongs to a {}{} joint, and this one is {}{}", reader.what(), key,
+                                   fmt::join(types.begin(), types.end() - (types.size() > 1 ? 1 : 0), ", "), last, type,
+                                   instead_of(key, type)));
   }
 }
 
@@ -256,7 +272,7 @@ JointDescription read_joint(TomlReader& reader, std::size_t number, const std::f
   if (joint.rest && !joint.stiffness)
     throw InvalidInput(joint.rest->where, fmt::format("{}: rest goes with a stiffness", reader.what()));
   if (auto friction = reader.optional_table("friction", fmt::format("{}: friction", reader.what())))
-    joint.friction = read_friction(*friction, joint.type == JointDescription::Type::revolute);
+    joint.friction = read_friction(*friction, joint.type);
   if (auto lock = reader.optional_table("lock", fmt::format("{}: lock", reader.what()))) joint.lock = read_lock(*lock);
   reader.finish();
   return joint;

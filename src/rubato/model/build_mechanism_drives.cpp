@@ -92,7 +92,7 @@ CoordinateTable table_of(const JointDescription& joint, const std::string& part)
 }
 
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const FreeCoordinate& s, int pressing_rows) {
+                   const FreeCoordinate& s, PressingRows pressing, double arm) {
   const FrictionDescription& given = *joint.friction;
   if (joint.motion)
     throw InvalidInput(given.where,
@@ -103,19 +103,24 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
   JointFriction friction;
   friction.name = joint.name;
   friction.s = s;
-  if (pressing_rows > 0) friction.joint = static_cast<int>(assembly.mechanism.joints.size()) - 1;
-  friction.coefficient = assembly.at_least_zero(given.coefficient, part + ": friction: coefficient");
-  if (given.radius) friction.coefficient *= assembly.positive(*given.radius, part + ": friction: radius");
+  if (pressing.count > 0) friction.joint = static_cast<int>(assembly.mechanism.joints.size()) - 1;
+  friction.coefficient = assembly.at_least_zero(given.coefficient, part + ": friction: coefficient") * arm;
+  friction.first_pressing_row = pressing.first;
   if (given.preload)
     friction.preload = assembly.at_least_zero(*given.preload, part + ": friction: preload");
-  else if (pressing_rows > 0)
-    friction.pressing_rows = pressing_rows;
+  else if (pressing.count > 0)
+    friction.pressing_rows = pressing.count;
   else
     throw InvalidInput(given.where,
                        fmt::format("{}: friction: it holds nothing, and no reaction presses on what slides; "
                                    "give \"preload\" [N]",
                                    part));
   assembly.mechanism.add_friction(std::move(friction));
+}
+
+double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
+  const auto& radius = joint.friction->radius;
+  return radius ? assembly.positive(*radius, part + ": friction: radius") : 1.0;
 }
 
 AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,

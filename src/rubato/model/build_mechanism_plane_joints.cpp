@@ -37,7 +37,8 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   const double value = is_length ? now : start_value(assembly, joint, part, s.is_angle());
   s.zero = now - value;
   mechanism.joint_coordinates.push_back({joint.name, s});
-  if (joint.friction) take_friction(assembly, joint, part, s, is_length ? 0 : s.is_angle() ? 2 : 1);
+  const int pressing = is_length ? 0 : s.is_angle() ? 2 : 1;
+  if (joint.friction) take_friction(assembly, joint, part, s, {0, pressing}, rubbing_radius(assembly, joint, part));
   take_laws(assembly, joint, part, s, value, take_lock(assembly, joint, part, s, value));
 }
 

@@ -82,17 +82,31 @@ SpaceCoordinate way_between(const SpaceFrame& first, const SpaceFrame& second) {
   return {SpaceCoordinate::Kind::displacement, first.point, second.point, BodyGap{first.axes.col(2)}, -1, 0.0};
 }
 
+/// All of the force of a hinge presses on its pin; of a slide what is across its way; of a screw the thread alone,
+/// whose flanks are square: N = |multiplier|/cos(a), with a the lead angle, makes the moment mu N radius/cos(a).
+/// @param lead  of a screw
+void take_space_friction(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built,
+                         const SpaceCoordinate& s, double lead) {
+  const double radius = rubbing_radius(assembly, joint, built.part);
+  if (joint.type != Type::screw) {
+    const int pressing = s.kind == SpaceCoordinate::Kind::length ? 0 : s.is_angle() ? 3 : 2;
+    take_friction(assembly, joint, built.part, s, {0, pressing}, radius);
+    return;
+  }
+  const SpaceCoordinate path = path_along_thread(s, built.first.axes.col(2), lead, radius);
+  take_friction(assembly, joint, built.part, path, {screw_thread_row, 1}, radius / path.share);
+}
+
 /// Adds a coordinate to the results, with the laws of the joint where they are its own.
 void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built,
-                     SpaceCoordinate s, bool has_laws) {
+                     SpaceCoordinate s, bool has_laws, double lead) {
   Mechanism& mechanism = assembly.mechanism;
   const bool is_length = s.kind == SpaceCoordinate::Kind::length;
   const double now = s.value(assembly.start.data());
   const double value = is_length ? now : has_laws ? start_value(assembly, joint, built.part, s.is_angle()) : 0.0;
   s.zero = now - value;
   mechanism.space_coordinates.push_back({joint.name, s});
-  // All of the force of a hinge presses on its pin; of a slide what is across its way.
-  if (joint.friction) take_friction(assembly, joint, built.part, s, is_length ? 0 : s.is_angle() ? 3 : 2);
+  if (joint.friction && has_laws) take_space_friction(assembly, joint, built, s, lead);
   if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
 }
 
@@ -164,7 +178,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
     mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
     ++assembly.elements;
     take_coordinate(assembly, joint, built,
-                    {SpaceCoordinate::Kind::length, first.point, second.point, PointDistance{}, -1, 0.0}, true);
+                    {SpaceCoordinate::Kind::length, first.point, second.point, PointDistance{}, -1, 0.0}, true, 0.0);
     return;
   }
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});
@@ -175,15 +189,17 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
     ++assembly.elements;
     return;
   }
+  const double lead = joint.type == Type::screw ? lead_of(assembly, joint, part) : 0.0;
   if (joint.type == Type::screw)
-    mechanism.joints.push_back(make_space_screw(joint.name, first, second, lead_of(assembly, joint, part)));
+    mechanism.joints.push_back(make_space_screw(joint.name, first, second, lead));
   else
     mechanism.joints.push_back(make_space_joint(kind_of(joint.type), joint.name, first, second));
   const bool turns = joint.type == Type::revolute || joint.type == Type::cylindrical || joint.type == Type::screw;
   const bool slides = joint.type == Type::prismatic || joint.type == Type::cylindrical || joint.type == Type::screw;
   if (turns)
-    take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical);
-  if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic);
+    take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical,
+                    lead);
+  if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic, lead);
 }
 
 }  // namespace rubato::model

@@ -26,9 +26,16 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
                    bool is_angle, double value);
 
 /// The friction of the joint that was added last on the coordinate that it leaves free.
-/// @param pressing_rows  how many rows of the joint, the first ones, are the force that presses
+/// @param pressing  which rows of the joint are the force that presses
+/// @param arm       the limit is mu times this; of an angle [m]
+struct PressingRows {
+  int first = 0, count = 0;
+};
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const FreeCoordinate& s, int pressing_rows);
+                   const FreeCoordinate& s, PressingRows pressing, double arm);
+
+/// Of the pin or the thread that rubs [m]; 1 for what slides.
+double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part);
 
 /// The lock of a joint on the coordinate that it leaves free.
 /// @param value  of s in the configuration given

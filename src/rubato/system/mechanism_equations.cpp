@@ -139,13 +139,14 @@ void MechanismEquations::analyse() {
     FrictionPlace place;
     const JointPlace& joint = joint_places_[static_cast<std::size_t>(friction.joint)];
     for (const Index i : joint.place)
-      for (int r = 0; r < friction.pressing_rows; ++r) place.slot.push_back(factor_.slot(i, n + joint.first_row + r));
+      for (int r = 0; r < friction.pressing_rows; ++r)
+        place.slot.push_back(factor_.slot(i, n + joint.first_row + friction.first_pressing_row + r));
     friction_places_.push_back(std::move(place));
   }
 }
 
 double MechanismEquations::pressing(const model::JointFriction& friction, const Vector& multiplier) const {
-  const Index row = mechanism_.first_row(friction.joint);
+  const Index row = mechanism_.first_row(friction.joint) + friction.first_pressing_row;
   return friction.pressing_rows == 1 ? std::abs(multiplier[row])
                                      : multiplier.segment(row, friction.pressing_rows).norm();
 }
@@ -202,7 +203,7 @@ void MechanismEquations::linearise_friction(const Weights& weights, const Vector
     if (size == 0.0) continue;
     double slope[most_friction_places];
     friction.s.slope(motion_.q, slope);
-    const Index row = mechanism_.first_row(friction.joint);
+    const Index row = mechanism_.first_row(friction.joint) + friction.first_pressing_row;
     const std::size_t rows = static_cast<std::size_t>(friction.pressing_rows);
     for (std::size_t k = 0; k < place.place.size(); ++k)
       for (std::size_t r = 0; r < rows; ++r)

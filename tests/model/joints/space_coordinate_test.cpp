@@ -68,10 +68,37 @@ TEST(SpaceCoordinates, AreHeldWithConsistentDerivatives) {
   }
 }
 
+/// Along a thread of radius 0.4 m whose helix rises by a third.
+SpaceCoordinate path() {
+  return model::path_along_thread(coordinate(SpaceCoordinate::Kind::angle), Vector3(0.0, 0.6, 0.8),
+                                  2.0 * std::numbers::pi * 0.4 / 3.0, 0.4);
+}
+
+TEST(SpaceCoordinates, AreHeldAlongAThreadWithConsistentDerivatives) {
+  const model::StickingJoint<SpaceCoordinate> stuck("stuck", path(), 0);
+  EXPECT_EQ(stuck.row_names()[0], "friction_moment");
+  for (const unsigned seed : {1u, 2u, 3u}) testing::expect_consistent_joint(stuck, SpaceMotion(2, seed, 0.5), 10.0);
+}
+
+// The angle where the way is 0.4/3 of it, and still where the point of contact moves across the helix: cos^2 = 9/10.
+TEST(SpaceCoordinates, OfAThreadMoveAlongItOnly) {
+  const SpaceCoordinate s = path(), angle = coordinate(SpaceCoordinate::Kind::angle),
+                        way = coordinate(SpaceCoordinate::Kind::displacement);
+  double s_slope[12], angle_slope[12], way_slope[12];
+  const SpaceMotion at(2, 5, 0.5);
+  s.slope(at.q.data(), s_slope);
+  angle.slope(at.q.data(), angle_slope);
+  way.slope(at.q.data(), way_slope);
+  for (int i = 0; i < 12; ++i)
+    EXPECT_NEAR(s_slope[i], 0.9 * angle_slope[i] + 0.9 / (3.0 * 0.4) * way_slope[i], 1e-14) << i;
+  EXPECT_DOUBLE_EQ(s.share + s.way_share * 0.4 / 3.0, 1.0);
+  EXPECT_NEAR(s.share * 1.0 - s.way_share * 0.4 * 3.0, 0.0, 1e-15);
+}
+
 // s'' by differences of s' along a motion with constant accelerations, which err by the square of the step.
 TEST(SpaceCoordinates, TellTheirRates) {
-  for (const auto kind : {Kind::angle, Kind::displacement, Kind::length}) {
-    const SpaceCoordinate s = coordinate(kind);
+  for (const SpaceCoordinate& s :
+       {coordinate(Kind::angle), coordinate(Kind::displacement), coordinate(Kind::length), path()}) {
     SpaceMotion at(2, 7, 0.5);
     std::vector<double> acceleration(at.padded.size(), 0.0);
     for (std::size_t i = 1; i < acceleration.size(); ++i) acceleration[i] = 0.1 * double(i) - 0.5;

@@ -19,7 +19,7 @@ enum FrictionPhase : int {
 };
 
 /// Coulomb friction on the coordinate s of a joint, with the limit L = mu (preload + |pressing multipliers|), of an
-/// angle times the radius of the pin:
+/// angle times the radius of the pin, of a screw times radius/cos^2(lead angle) of its thread:
 ///
 ///   slides   the force -sign(s') L on s, sign(s') by the phase
 ///   sticks   the constraint s = where it stopped, until its multiplier reaches L
@@ -28,11 +28,12 @@ enum FrictionPhase : int {
 struct JointFriction {
   std::string name;  ///< of the joint
   FreeCoordinate s;
-  double coefficient = 0.0;  ///< mu [-]; of an angle mu times the radius [m]
-  double preload = 0.0;      ///< [N]
-  int joint = -1;            ///< whose parts rub, among the mechanism's joints; -1: of what constrains nothing
-  int pressing_rows = 0;     ///< so many of its rows, the first ones, press with the norm of their multipliers
-  int sticking_joint = -1;   ///< the constraint that holds it
+  double coefficient = 0.0;    ///< mu [-]; of an angle mu times an arm [m]
+  double preload = 0.0;        ///< [N]
+  int joint = -1;              ///< whose parts rub, among the mechanism's joints; -1: of what constrains nothing
+  int first_pressing_row = 0;  ///< among its rows
+  int pressing_rows = 0;       ///< so many of them press with the norm of their multipliers
+  int sticking_joint = -1;     ///< the constraint that holds it
 
   bool follows_reaction() const { return pressing_rows > 0; }
 };

@@ -11,7 +11,15 @@ constexpr int k = SpaceCoordinate::tangent_size;
 
 SpaceValue value_of(const SpaceCoordinate& s, const double* q, SpaceDetail detail) {
   SpaceValue value;
-  evaluate(s.row, pair_of(q, s.first, s.second), value, detail);
+  const SpacePair pair = pair_of(q, s.first, s.second);
+  evaluate(s.row, pair, value, detail);
+  if (s.counter >= 0) value.value = nearest_turn(value.value, q[s.counter]);
+  if (s.way_share == 0.0) return value;
+  SpaceValue way;
+  evaluate(s.way, pair, way, detail);
+  value.value = s.share * value.value + s.way_share * way.value;
+  value.gradient = s.share * value.gradient + s.way_share * way.gradient;
+  if (detail == SpaceDetail::slope) value.slope = s.share * value.slope + s.way_share * way.slope;
   return value;
 }
 
@@ -32,10 +40,7 @@ std::vector<Index> SpaceCoordinate::places() const {
   return places;
 }
 
-double SpaceCoordinate::value(const double* q) const {
-  const double now = value_of(*this, q, SpaceDetail::gradient).value;
-  return (counter < 0 ? now : nearest_turn(now, q[counter])) - zero;
-}
+double SpaceCoordinate::value(const double* q) const { return value_of(*this, q, SpaceDetail::gradient).value - zero; }
 
 void SpaceCoordinate::slope(const double* q, double* slope) const {
   Eigen::Map<Vector12> out(slope);
@@ -55,6 +60,16 @@ double SpaceCoordinate::second_rate(const Motion& motion, const double* accelera
   const SpaceValue now = value_of(*this, motion.q, SpaceDetail::slope);
   const Vector12 v = part_of(*this, motion.v);
   return now.gradient.dot(part_of(*this, acceleration)) + v.dot(now.slope * v);
+}
+
+SpaceCoordinate path_along_thread(const SpaceCoordinate& angle, const numerics::Vector3& axis, double lead,
+                                  double radius) {
+  SpaceCoordinate path = angle;
+  const double slope = lead / (2.0 * std::numbers::pi * radius);
+  path.share = 1.0 / (1.0 + slope * slope);
+  path.way = BodyGap{axis};
+  path.way_share = path.share * slope / radius;
+  return path;
 }
 
 TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second) {

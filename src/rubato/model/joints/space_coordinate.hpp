@@ -11,8 +11,8 @@
 namespace rubato::model {
 
 /// The coordinate s that a joint in space leaves free: the angle by which the second part has turned about the axis,
-/// the way along it, or the length from one point to another. Derivatives are by the increments of both nodes,
-/// rotations in body axes.
+/// the way along it, the length from one point to another, or of a screw the way along its thread as an angle (see
+/// path_along_thread). Derivatives are by the increments of both nodes, rotations in body axes.
 ///
 /// A rotation says its angle up to whole turns only. The turns are counted in the configuration: behind the numbers of
 /// the nodes stands, for each angle, the angle with all its turns, which retract() carries on by continuity. A step
@@ -24,9 +24,12 @@ struct SpaceCoordinate {
 
   Kind kind = Kind::angle;
   SpacePoint first, second;
-  SpaceRow row;        ///< a TurnAngle, a BodyGap or a PointDistance
-  Index counter = -1;  ///< of an angle: where in q its turns are counted
-  double zero = 0.0;   ///< subtracted from what the nodes say [rad] or [m]
+  SpaceRow row;                            ///< a TurnAngle, a BodyGap or a PointDistance
+  Index counter = -1;                      ///< of an angle: where in q its turns are counted
+  double zero = 0.0;                       ///< subtracted from what the nodes say [rad] or [m]
+  double share = 1.0;                      ///< of the row in s [-]
+  BodyGap way{numerics::Vector3::Zero()};  ///< along a thread, what counts beside its angle
+  double way_share = 0.0;                  ///< of the way in s [rad/m]; 0: no thread
 
   bool is_angle() const { return kind == Kind::angle; }
   /// As formulas call it.
@@ -41,6 +44,17 @@ struct SpaceCoordinate {
   /// @param acceleration  [n], after a zero, as the velocities of a Motion
   double second_rate(const Motion& motion, const double* acceleration) const;
 };
+
+/// How far a point of the flanks at a radius has gone along the helix of a screw, divided by what it goes in a radian,
+///
+///   s = cos^2(a) angle + sin(a) cos(a)/radius way,    tan(a) = lead/(2 pi radius)
+///
+/// the angle itself where the thread holds. Its gradient is the direction along the helix, at a right angle to the
+/// force between the flanks: a moment M on s is the force M cos(a)/radius along the helix.
+/// @param angle  of the screw, with its zero
+/// @param axis   in the axes of the first node, of length 1
+SpaceCoordinate path_along_thread(const SpaceCoordinate& angle, const numerics::Vector3& axis, double lead,
+                                  double radius);
 
 /// The angle about the third axis of two frames, as SpaceCoordinate counts it before `zero`.
 TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second);

@@ -38,6 +38,7 @@ std::unique_ptr<Joint> make_space_joint(SpaceJointKind kind, std::string name, c
 
 /// Turns about the third axis and moves along it by `lead` a turn [m], right-handed; a negative lead is a left-handed
 /// screw. The turns are counted from the displacement.
+constexpr int screw_thread_row = 4;  ///< the force along the axis that the thread carries
 std::unique_ptr<Joint> make_space_screw(std::string name, const SpaceFrame& first, const SpaceFrame& second,
                                         double lead);
 
