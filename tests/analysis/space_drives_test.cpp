@@ -1,6 +1,4 @@
-#include <rubato/core/error.hpp>
-
-#include <support/mechanism_study.hpp>
+#include <support/laid_studies.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,6 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::MechanismStudy;
 using testing::replaced;
+using testing::verdict;
 
 // A body whose joint has the axis n = (1, 2, 2)/3 through the origin. About n it has
 // n . J n = (0.3 + 4*0.4 + 4*0.5 + 2*(2*0.01 + 2*0.02 + 4*0.03))/9 = 4.26/9 kg m2.
@@ -89,15 +88,6 @@ TEST(SpaceDrives, TurnAScrewThatCarriesItsMassAlong) {
   EXPECT_NEAR(ran.last("run", "angle", "motor"), 3.0, 1e-9);
   EXPECT_NEAR(ran.last("run", "displacement", "motor"), 3.0 * way, 1e-9);
   EXPECT_NEAR(ran.last("run", "drive_moment", "motor"), 6.0 * (about_axis + 2.0 * way * way), 1e-7);
-}
-
-std::string verdict(const std::string& text) {
-  try {
-    const MechanismStudy ran(text);
-    return "no complaint";
-  } catch (const InvalidInput& fault) {
-    return fault.what();
-  }
 }
 
 TEST(SpaceDriveFault, NamesTheJointsThatTakeADrive) {

@@ -1,7 +1,4 @@
-#include <rubato/core/error.hpp>
-
-#include <support/mechanism_study.hpp>
-#include <support/tilted_plane.hpp>
+#include <support/laid_studies.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+// What following forces do in space alone; following_force_test.cpp has what they do in the plane too.
 namespace rubato {
 namespace {
 
@@ -17,54 +15,14 @@ using numerics::Vector3;
 using ::testing::HasSubstr;
 using testing::MechanismStudy;
 using testing::replaced;
-using testing::TiltedPlane;
-
-const TiltedPlane tilted;
+using testing::rocket;
+using testing::verdict;
 
 Vector3 of_body(const MechanismStudy& ran, std::size_t row, const std::string& variable, const std::string& prefix) {
   Vector3 vector;
   const std::string axes[] = {"x", "y", "z"};
   for (Index i = 0; i < 3; ++i) vector[i] = ran.at(row, "run", variable, prefix + axes[i]);
   return vector;
-}
-
-// A rocket of 2 kg that spins at 3 rad/s about its own z axis, with a thrust of 5 N along its own x axis: in the plane
-// across z x'' = 2.5 cos(3 t), y'' = 2.5 sin(3 t). The plane lies askew.
-const std::string rocket =
-    "[[body]]\nname = \"rocket\"\nmass = 2.0\ninertia = [0.3, 0.35, 0.4]\nposition = " + tilted.point(0.0, 0.0) +
-    "\nrotation = " + tilted.rotation() + "\nangular_velocity = [0.0, 0.0, 3.0]\n" + R"(
-[[force]]
-on = "rocket.x"
-expression = "5"
-following = true
-[[analysis]]
-name = "run"
-type = "transient"
-step = 0.0005
-duration = 2.0
-)";
-
-TEST(SpaceFollowingForces, TurnWithTheirBody) {
-  const MechanismStudy ran(rocket);
-  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
-  const double w = 3.0, t = 2.0, a = 2.5;
-  const double x = a / (w * w) * (1.0 - std::cos(w * t)), y = a / (w * w) * (w * t - std::sin(w * t));
-  const std::size_t last = ran.table("run").rows.size() - 1;
-  // Second order: (w h)^2/12 of a t^2/2, 1e-6 m.
-  const Vector3 expected = tilted.origin + tilted.direction_of(x, y);
-  EXPECT_LT((of_body(ran, last, "position", "rocket.") - expected).norm(), 3e-6);
-  const double kinetic = ran.last("run.energy", "kinetic") - 0.5 * 0.4 * 9.0;
-  EXPECT_NEAR(ran.last("run.energy", "load_work"), kinetic, 1e-6);
-}
-
-// At rest, at a point 0.2 m off the axis: the moment 1 N m about z of the body, constant, for which the step is exact.
-TEST(SpaceFollowingForces, TurnABodyByTheirLeverAtAPoint) {
-  std::string text = replaced(rocket, "angular_velocity = [0.0, 0.0, 3.0]\n", "");
-  text = replaced(text, "following = true", "following = true\nat = " + tilted.point(0.7, -0.2));
-  const MechanismStudy ran(text);
-  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
-  EXPECT_NEAR(ran.last("run", "angular_velocity", "rocket.rz"), 1.0 / 0.4 * 2.0, 1e-9);
-  EXPECT_NEAR(ran.last("run", "angular_velocity", "rocket.rx"), 0.0, 1e-9);
 }
 
 /// A body that turns about no principal axis.
@@ -278,25 +236,15 @@ expression = "1.0"
   EXPECT_THAT(warnings("following = true\n")[0], HasSubstr("the stiffness is not symmetric"));
 }
 
-std::string verdict(const std::string& text) {
-  try {
-    const MechanismStudy ran(text);
-    return "no complaint";
-  } catch (const InvalidInput& fault) {
-    return fault.what();
-  }
-}
-
 TEST(SpaceFollowingForceFault, NamesWhatGoesWithIt) {
-  EXPECT_THAT(verdict(replaced(rocket, "following = true", "at = [0.7, -0.2, 0.0]")),
-              HasSubstr("\"at\" goes with following = true"));
-  EXPECT_THAT(verdict(replaced(rocket, "following = true", "following = true\nat = [0.7, -0.2]")),
+  EXPECT_THAT(verdict(rocket(testing::in_space, 3.0, "following = true\nat = [0.7, -0.2]\n")),
               HasSubstr("the force on \"rocket.x\": at takes three numbers in space, got 2"));
   EXPECT_THAT(verdict(replaced(tumbling, "following = false", "following = true\nat = [0.7, -0.2, 0.0]")),
               HasSubstr("the force on \"body.ry\": a moment has no point; remove \"at\""));
   const std::string mass =
       "[[node]]\nname = \"point\"\nposition = [0.0, 0.0, 0.0]\n[[mass]]\nnode = \"point\"\nmass = 1.0\n";
-  EXPECT_THAT(verdict(replaced(rocket, "[[force]]\non = \"rocket.x\"", mass + "[[force]]\non = \"point.x\"")),
+  EXPECT_THAT(verdict(replaced(rocket(testing::in_space, 3.0), "[[force]]\non = \"rocket.x\"",
+                               mass + "[[force]]\non = \"point.x\"")),
               HasSubstr("follows a mass that does not turn"));
 }
 

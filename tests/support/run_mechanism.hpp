@@ -50,4 +50,11 @@ inline std::string replaced(std::string text, const std::string& piece, const st
   return text.replace(at, piece.size(), other);
 }
 
+/// The text with every such piece of it replaced.
+inline std::string replaced_everywhere(std::string text, const std::string& piece, const std::string& other) {
+  for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + other.size()))
+    text.replace(at, piece.size(), other);
+  return text;
+}
+
 }  // namespace rubato::testing
