@@ -138,6 +138,14 @@ class Report(unittest.TestCase):
             for title in titles:
                 self.assertRegex(title, r" \[.+\]$", "every axis names its unit")
 
+    def test_a_line_passes_through_every_row(self):
+        drawn = ("const trace = document.querySelector('#figure-1 .plot')._fullData?.[0];"
+                 "const line = document.querySelector('#figure-1 path.js-line');"
+                 "return trace && line ? [trace.x.length, line.getAttribute('d').split(/[ML]/).length - 1] : null")
+        rows, points = self.browser.wait(drawn)
+        self.assertGreater(rows, 100)
+        self.assertEqual(points, rows, "smooth curves have no corners")
+
     def test_a_click_in_the_legend_hides_a_line(self):
         lines = "return document.querySelectorAll('#figure-1 .scatterlayer .trace').length"
         before = self.browser.wait(lines)

@@ -94,6 +94,11 @@ function frame_figure({drawing, caption, tools, file_kind, save, render, height,
   return figure;
 }
 
+/** Lines through all of their points: Plotly would leave out those on nearly straight ways, and smooth curves show corners. */
+function with_every_point(traces) {
+  return traces.map((trace) => (trace.type === "scatter" ? {...trace, line: {...trace.line, simplify: false}} : trace));
+}
+
 /**
  * A figure with axes.
  *
@@ -120,7 +125,7 @@ function make_figure({caption, draw, choosers = [], height = 380, is_small = fal
       responsive: true, displaylogo: false, displayModeBar: "hover", doubleClick: "reset",
       modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage", "sendChartToCloud"],
     };
-    return Plotly.react(drawing, traces, {...complete_layout(layout, height, is_small), ...size}, config);
+    return Plotly.react(drawing, with_every_point(traces), {...complete_layout(layout, height, is_small), ...size}, config);
   }
   const save = (filename) => Plotly.downloadImage(drawing, {format: "svg", filename, width: drawing.clientWidth, height});
   const figure = frame_figure({drawing, caption, tools, file_kind: "SVG", save, render, height, is_small});
