@@ -14,15 +14,17 @@ sys.path.insert(0, str(root / "tests" / "report"))
 from browser_test import Browser  # noqa: E402: lies beside the tests of the report
 
 # Of each example: the picture's name, and words of the caption of its figure. Where they are not enough: which of the
-# figures with these words, from 1, and what is chosen above it.
+# figures with these words, from 1, and what is chosen above it ("Lines": the names of the only ones to be shown). A list of
+# times: the structure at these moments, drawn over each other.
 RESPONSES, SLIDERS = "Responses in the steady state", "Sliders over a period"
+MOTION, ROTATIONS, STEPS = "Motion of the coordinates", "Rotations of nodes and joints", "Length of the steps"
 PICTURES = {
-    "single-mass": {"motion": "Motion of the coordinates", "energy": "Energy ledger"},
-    "single-mass-slider": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger",
+    "single-mass": {"motion": MOTION, "energy": "Energy ledger"},
+    "single-mass-slider": {"motion": MOTION, "loop": "Hysteresis loop", "energy": "Energy ledger",
                            "frf": RESPONSES, "phase": "Phases of the harmonics", "slip": SLIDERS,
                            "loops": "Hysteresis loops at chosen points", "marched": (RESPONSES, 2, {}),
                            "damper": "Damper curve:"},
-    "underplatform-damper": {"motion": "Motion of the coordinates", "loop": "Hysteresis loop", "energy": "Energy ledger",
+    "underplatform-damper": {"motion": MOTION, "loop": "Hysteresis loop", "energy": "Energy ledger",
                              "modes": ("Shape of a mode", 1, {"Mode": "Mode 4"}),
                              "frf": (RESPONSES, 1, {"Scale": "Logarithmic"}), "map": "Amplitude over frequency and parameter",
                              "loops": "Hysteresis loops at chosen points", "damper": "Damper curve:"},
@@ -33,13 +35,23 @@ PICTURES = {
     "method-study": {"error": "against step", "radius": "Spectral radius", "elongation": "Period elongation",
                      "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
                      "responses": "response beside"},
-    "building": {"motion": "Motion of the coordinates"},
-    "two-supports": {"motion": "Motion of the coordinates"},
-    "late-stop": {"motion": "Motion of the coordinates"},
-    "frame": {"motion": "Motion of the coordinates"},
-    "heavy-top": {"motion": "Motion of the coordinates"},
+    "building": {"motion": MOTION},
+    "two-supports": {"motion": MOTION},
+    "late-stop": {"motion": MOTION},
+    "frame": {"motion": MOTION},
+    "double-pendulum": {"positions": [0.0, 0.8, 1.1, 1.8, 2.2, 3.8], "motion": MOTION, "steps": STEPS},
+    "locking-bars": {"positions": [0.0, 0.9, 1.2, 1.39], "angle": (ROTATIONS, 1, {"Lines": ["B"]}), "steps": STEPS,
+                     "energy": "Energy ledger"},
+    "slider-crank": {"positions": [0.0, 0.2, 0.27, 0.33, 0.37, 0.42], "speed": (ROTATIONS, 1, {"Quantity": "Angular velocity", "Lines": ["shaft"]}),
+                     "reactions": ("What each joint does", 1, {"Quantity": "Reaction normal"})},
+    "slider-crank-flexible": {"drive": ("Forces and moments of friction and drives", 1, {"Quantity": "Drive moment"})},
+    "deployable-panel": {"positions": [0.0, 0.6, 1.07, 1.5, 1.84, 4.5], "angles": (ROTATIONS, 1, {"Lines": ["wall", "first", "second"]}),
+                         "energy": "Energy ledger"},
+    "door-on-two-hinges": {"angle": (ROTATIONS, 1, {"Lines": ["upper hinge"]}),
+                           "reactions": ("What each joint does", 1, {"Quantity": "Reaction x"})},
+    "heavy-top": {"motion": MOTION},
     "bricard": {"energy": "Energy ledger"},
-    "matrices": {"motion": "Motion of the coordinates"},
+    "matrices": {"motion": MOTION},
 }
 WIDTH = 900
 
@@ -74,6 +86,38 @@ const plot = document.querySelector(`#figure-${arguments[0]} .plot`);
 return Plotly.toImage(plot, {format: 'png', width: arguments[1], height: plot.clientHeight, scale: 1});
 """
 
+# Hides all lines but those of these names, and draws them solid.
+HIDE = """
+const plot = document.querySelector(`#figure-${arguments[0]} .plot`);
+const shown = plot.data.map((trace) => arguments[1].includes(trace.name));
+return Plotly.restyle(plot, {visible: shown, 'line.dash': 'solid'}).then(() => arguments[1].every((name) => plot.data.some((trace) => trace.name === name)));
+"""
+
+# The structure at some times, the last of them in full colour.
+OVERLAY = """
+const figure = document.querySelector(`#figure-${arguments[0]}`);
+const [canvas, scrub, label] = ['canvas', 'input[type=range]', '.moment'].map((part) => figure.querySelector(part));
+const sheet = document.createElement('canvas');
+[sheet.width, sheet.height] = [canvas.width, canvas.height];
+const pen = sheet.getContext('2d');
+pen.fillStyle = 'white';
+pen.fillRect(0, 0, sheet.width, sheet.height);
+pen.globalCompositeOperation = 'multiply';
+const place = (at) => {
+  scrub.value = String(at);
+  scrub.dispatchEvent(new Event('input'));
+  return Number(label.textContent.match(/t = (.*) s/)[1]);
+};
+for (const [index, time] of arguments[1].entries()) {
+  let low = 0, high = Number(scrub.max);
+  while (high - low > 1e-3) [low, high] = place((low + high) / 2) < time ? [(low + high) / 2, high] : [low, (low + high) / 2];
+  place(high);
+  pen.globalAlpha = 0.3 + 0.7 * (index + 1) / arguments[1].length;
+  pen.drawImage(canvas, 0, 0);
+}
+return sheet.toDataURL('image/png');
+"""
+
 # Several figures on one sheet, in two columns.
 SHEET = """
 return Promise.all(arguments[0].map((number) => Plotly.toImage(document.querySelector(`#figure-${number} .plot`),
@@ -100,7 +144,7 @@ def find(browser, words):
     numbers = browser.script(FIND, words)
     for number in numbers:
         browser.script(DRAW, number)
-        browser.wait(f"return document.querySelector('#figure-{number} .main-svg') !== null")
+        browser.wait(f"return document.querySelector('#figure-{number} .main-svg, #figure-{number} canvas') !== null")
     return numbers
 
 
@@ -110,13 +154,17 @@ def write(name, data):
 
 
 def save(browser, example, picture, figure):
+    if isinstance(figure, list):
+        write(f"{example}-{picture}.png", browser.script(OVERLAY, find(browser, "The structure in motion")[0], figure))
+        return True
     words, which, choices = (figure, 1, {}) if isinstance(figure, str) else figure
     numbers = find(browser, words)
     if len(numbers) < which:
         print(f"{example}: no figure {which} says \"{words}\"", file=sys.stderr)
         return False
     for label, option in choices.items():
-        if not browser.script(CHOOSE, numbers[which - 1], label, option):
+        if not (browser.script(HIDE, numbers[which - 1], option) if label == "Lines"
+                else browser.script(CHOOSE, numbers[which - 1], label, option)):
             print(f"{example}: the figure {picture} has no {label} \"{option}\"", file=sys.stderr)
             return False
     is_sheet = example == "method-study" and picture == "responses"
