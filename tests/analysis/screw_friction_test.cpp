@@ -216,8 +216,8 @@ TEST(ScrewFrictionFault, SaysHowOtherJointsAreBuiltOfThoseThatRub) {
   const std::string text = replaced(nut(locking, 0.0, "0"), "lead = 0.01\n", "");
   const auto says = [&](const std::string& of, const std::string& type, const std::string& instead) {
     EXPECT_THAT(verdict(replaced(of, "\"screw\"", "\"" + type + "\"")),
-                HasSubstr("\"friction\" belongs to a revolute, prismatic or screw joint, and this one is " + type +
-                          "; " + instead));
+                HasSubstr("\"friction\" belongs to a revolute, prismatic, screw or strut joint, and this one is " +
+                          type + "; " + instead));
   };
   const std::string row = " in a row, with small bodies between them, each with its own friction";
   says(text, "cylindrical", "take a revolute and a prismatic joint" + row);
