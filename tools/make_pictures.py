@@ -47,6 +47,7 @@ PICTURES = {
     "slider-crank-flexible": {"drive": ("Forces and moments of friction and drives", 1, {"Quantity": "Drive moment"})},
     "deployable-panel": {"positions": [0.0, 0.6, 1.07, 1.5, 1.84, 4.5], "angles": (ROTATIONS, 1, {"Lines": ["wall", "first", "second"]}),
                          "energy": "Energy ledger"},
+    "hatch": {"positions": [0.0, 0.2, 0.4, 0.6], "angle": (ROTATIONS, 1, {"Lines": ["hinge"]}), "energy": "Energy ledger"},
     "door-on-two-hinges": {"angle": (ROTATIONS, 1, {"Lines": ["upper hinge"]}),
                            "reactions": ("What each joint does", 1, {"Quantity": "Reaction x"})},
     "heavy-top": {"motion": MOTION},
