@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rubato::system {
 namespace {
@@ -133,6 +134,7 @@ void MechanismEquations::analyse() {
   for (Entry& entry : entries_) {
     entry.slot = factor_.slot(n + entry.row, entry.place);
     entry.transposed = factor_.slot(entry.place, n + entry.row);
+    if (entry.slot == factor_.spare_slot()) std::swap(entry.slot, entry.transposed);
   }
   for (Index row = n; row < size; ++row) row_slot_.push_back(factor_.slot(row, row));
   for (const auto& friction : mechanism_.model().frictions) {
@@ -288,10 +290,11 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
     }
   }
   std::fill(row_seen_.begin(), row_seen_.end(), 0.0);
+  const bool is_symmetric = factor_.is_symmetric();  // then one of both is the spare place
   for (const Entry& entry : entries_) {
     const double value = jacobian_[static_cast<std::size_t>(entry.local)];
     values[entry.slot] += value;
-    values[entry.transposed] += value;
+    if (!is_symmetric) values[entry.transposed] += value;
     row_seen_[static_cast<std::size_t>(entry.row)] +=
         value * value * inverse_mass_[static_cast<std::size_t>(entry.place)];
   }

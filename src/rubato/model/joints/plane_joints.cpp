@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace rubato::model {
 namespace {
@@ -69,8 +70,10 @@ class Revolute : public PlaneJoint {
   static void write(const PlanePoint::Now& a, const PlanePoint::Now& b, double* g, double* jacobian) {
     g[0] = b.x - a.x;
     g[1] = b.y - a.y;
-    const double rows[2][k] = {{-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y}, {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x}};
-    std::copy(rows[0], rows[0] + 2 * k, jacobian);
+    double* const x = jacobian;  // entry by entry: rows made elsewhere and copied wait for their parts to be stored
+    double* const y = jacobian + k;
+    x[0] = -1.0, x[1] = 0.0, x[2] = a.arm_y, x[3] = 1.0, x[4] = 0.0, x[5] = -b.arm_y;
+    y[0] = 0.0, y[1] = -1.0, y[2] = -a.arm_x, y[3] = 0.0, y[4] = 1.0, y[5] = b.arm_x;
   }
   static void bend(const PlanePoint::Now& a, const PlanePoint::Now& b, const double* multiplier, double* curvature) {
     std::fill(curvature, curvature + k * k, 0.0);

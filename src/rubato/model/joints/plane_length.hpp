@@ -3,6 +3,7 @@
 #include <rubato/model/joints/plane_point.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace rubato::model {
 
@@ -31,12 +32,19 @@ struct PlaneLength {
   /// weight times the second derivatives of d . d / 2: those of d against d, and the slopes of d against each other.
   /// @param h  [6 x 6]
   void half_square_curvature(double weight, double* h) const {
-    const double slope_x[6] = {-1.0, 0.0, a.arm_y, 1.0, 0.0, -b.arm_y};
-    const double slope_y[6] = {0.0, -1.0, -a.arm_x, 0.0, 1.0, b.arm_x};
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) h[i * 6 + j] = weight * (slope_x[i] * slope_x[j] + slope_y[i] * slope_y[j]);
-    h[2 * 6 + 2] += weight * (dx() * a.arm_x + dy() * a.arm_y);
-    h[5 * 6 + 5] -= weight * (dx() * b.arm_x + dy() * b.arm_y);
+    const double ax = weight * a.arm_x, ay = weight * a.arm_y, bx = weight * b.arm_x, by = weight * b.arm_y;
+    const auto put = [&](int i, int j, double value) { h[i * 6 + j] = h[j * 6 + i] = value; };
+    for (int i = 0; i < 2; ++i) {
+      put(i, i, weight);
+      put(i, i + 3, -weight);
+      put(i + 3, i + 3, weight);
+    }
+    for (const auto& [i, j] : {std::pair{0, 1}, {3, 4}, {0, 4}, {1, 3}}) put(i, j, 0.0);
+    put(0, 2, -ay), put(1, 2, ax), put(3, 2, ay), put(4, 2, -ax);
+    put(0, 5, by), put(1, 5, -bx), put(3, 5, -by), put(4, 5, bx);
+    put(2, 5, -(ay * b.arm_y + ax * b.arm_x));
+    put(2, 2, ax * (a.arm_x + dx()) + ay * (a.arm_y + dy()));
+    put(5, 5, bx * (b.arm_x - dx()) + by * (b.arm_y - dy()));
   }
 
   /// @param slope  the first derivatives of |d| [6]
