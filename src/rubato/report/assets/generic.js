@@ -43,14 +43,15 @@ function one_row_tables(table, digits) {
 
 function generic_figure(table, variable) {
   const series = series_of(table, variable);
+  const is_sparse = table.rows <= 60;  // a line of one value would not be seen
   const what = variable.description ? `${phrase(variable.name)}: ${variable.description}.` : `${phrase(variable.name)}.`;
   const how = table.is_envelope
     ? ` The extremes of ${count_text(table.overview[0][0].length / 2)} buckets of ${count_text(table.rows)} rows.` : "";
   return make_figure({
     caption: `${what}${how}${variable.dimension ? shortened(variable) : ""}`,
     draw: () => ({
-      traces: series.map((line, index) => ({type: "scatter", mode: "lines", x: line.x, y: line.y, name: plot_text(line.name),
-                                            line: line_style(index), showlegend: true})),
+      traces: series.map((line, index) => ({type: "scatter", mode: is_sparse ? "lines+markers" : "lines", x: line.x, y: line.y,
+                                            name: plot_text(line.name), line: line_style(index), showlegend: true})),
       layout: {xaxis: axis(axis_label(series[0].x_variable)), yaxis: axis(axis_label(variable))},
     }),
   });

@@ -125,8 +125,8 @@ function energy_ledger(table) {
   const choosers = table.window ? [whole_or_window] : [];
   return make_figure({
     caption: "Energy ledger: work of the loads and what dampers, sliders and locks dissipated since the start (top), energy stored " +
-      "(middle), and the residue of the integration that closes the balance (bottom, on its own scale). " +
-      overview_text(table),
+      "(middle), and the residue of the integration that closes the balance (bottom, on its own scale). What stays zero is " +
+      `left out. ${overview_text(table)}`,
     height: 620, choosers,
     draw: ([range = 0]) => {
       const columns = columns_of(table, range);
@@ -135,11 +135,11 @@ function energy_ledger(table) {
       ledger_panels.forEach((panel, index) => {
         const suffix = index === 0 ? "" : String(index + 1);
         layout[`yaxis${suffix}`] = axis(panel.title, {domain: panel.domain});
-        for (const name of index === 1 ? [...panel.names, ...others] : panel.names) {
-          const variable = variable_of(table, name);
-          if (!variable) continue;
+        const entries = (index === 1 ? [...panel.names, ...others] : panel.names).map((name) => variable_of(table, name)).filter(Boolean);
+        const moving = entries.filter((variable) => columns[variable.index][0].some((value) => value !== 0));
+        for (const variable of moving.length ? moving : entries) {
           traces.push({type: "scatter", mode: "lines", x: columns[0][0], y: columns[variable.index][0],
-                       yaxis: `y${suffix}`, name: phrase(name), line: line_style(traces.length)});
+                       yaxis: `y${suffix}`, name: phrase(variable.name), line: line_style(traces.length)});
         }
       });
       return {traces, layout};
