@@ -22,6 +22,8 @@ class MechanismStepper final : public Stepper {
         product_(mechanism.size()),
         constraint_(mechanism.constraint_count()),
         multiplier_(mechanism.constraint_count()) {
+    for (const auto& element : mechanism.model().elements) is_smooth_ = is_smooth_ && !element->has_kinks();
+    for (const auto& friction : mechanism.model().frictions) is_smooth_ = is_smooth_ && !friction.follows_reaction();
     tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
                                    : mechanism.reference() > 0.0 ? mechanism.reference()
                                                                  : std::sqrt(mechanism.mass().diagonal().sum()));
@@ -72,8 +74,10 @@ class MechanismStepper final : public Stepper {
       if (!std::isfinite(size)) return fault(StepOutcome::not_finite);
       to.multiplier += (1.0 / scale_) * constraint_;
       // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
-      // Newton's own matrix leaves less than nine tenths of a first correction.
-      const double ratio = iteration == 0 ? most_left : size / last;
+      // Newton's own matrix leaves less than nine tenths of a first correction; but not across a kink, where the
+      // acceleration of a short step would be made of what is left.
+      const bool is_known = is_smooth_ || size <= round_off * tolerance_;
+      const double ratio = iteration > 0 ? size / last : is_known ? most_left : 1.0;
       const double before = ratio < 1.0 ? size / (1.0 - ratio) : HUGE_VAL;  // the error without this correction
       const bool is_placed = iteration > 0 && before <= negligible * tolerance_;
       if (!is_placed) {
@@ -192,6 +196,7 @@ class MechanismStepper final : public Stepper {
     return {outcome, worst};
   }
 
+  static constexpr double round_off = 1e-6;   // of the tolerance: a first correction that says that nothing moves
   static constexpr double most_left = 0.9;    // of a first correction, by the matrix of the same iterate
   static constexpr double negligible = 1e-2;  // of the tolerance
 
@@ -201,6 +206,7 @@ class MechanismStepper final : public Stepper {
   system::MechanismEquations equations_;
   Vector travel_, force_, product_, constraint_, multiplier_;
   double tolerance_ = 0.0, scale_ = 0.0;
+  bool is_smooth_ = true;  // the slopes of all forces
   system::State usual_for_;
   int usual_ = -1;  // rows that repeat others; -1: not known yet
 };

@@ -38,6 +38,12 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
   transitions_.resize(mechanism.model().locks.size() + mechanism.model().frictions.size());
   for (const auto& lock : mechanism.model().locks)
     row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);
+  for (const auto& lock : mechanism.model().locks) {
+    const auto& frictions = mechanism.model().frictions;
+    const auto is_of_it = [&](const model::JointFriction& friction) { return friction.name == lock.name; };
+    const auto found = std::find_if(frictions.begin(), frictions.end(), is_of_it);
+    friction_of_.push_back(found == frictions.end() ? -1 : static_cast<int>(found - frictions.begin()));
+  }
 }
 
 std::vector<double> MechanismTimeline::breakpoints(double from, double to) const {
@@ -197,6 +203,9 @@ bool MechanismTimeline::release(system::State& state) {
 }
 
 bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state) const {
+  if (lock < row_.size() && friction_of_[lock] >= 0 && state.phase[lock] == model::lock_open &&
+      state.rubbing[static_cast<std::size_t>(friction_of_[lock])] == model::friction_sticks)
+    return false;  // what sticks at its stop lies beyond it by round-off, and comes no nearer
   return lock >= row_.size() || !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
 }
 

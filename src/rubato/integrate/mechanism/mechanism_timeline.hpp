@@ -84,6 +84,7 @@ class MechanismTimeline final : public Timeline {
   system::Loads loads_;
   Vector left_, right_;
   std::vector<Index> row_;                            // of the constraint of each lock, or -1
+  std::vector<int> friction_of_;                      // of the joint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
   system::State balanced_;
   mutable std::vector<double> joint_switches_;  // of laws of joints, in the interval of the last breakpoints()

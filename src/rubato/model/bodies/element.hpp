@@ -33,6 +33,8 @@ class Element {
   virtual void tangent(const Motion& motion, double stiffness, double damping, double* force,
                        double* tangent) const = 0;
   virtual bool has_symmetric_tangent() const { return true; }
+  /// Whether its slopes may jump where q or v pass some value.
+  virtual bool has_kinks() const { return false; }
 
   /// What it stores [J]; the rest of its work is that of a load or of a damper, as `role` says.
   virtual double stored_energy(const Motion&) const { return 0.0; }

@@ -134,6 +134,7 @@ class TabulatedLaw final : public CoordinateLaw<Coordinate> {
   TabulatedLaw(std::string name, const Coordinate& s, CoordinateTable table, const AtLock& when)
       : Base(std::move(name), s, when), table_(std::move(table)) {}
   std::unique_ptr<Element> clone() const override { return std::make_unique<TabulatedLaw>(*this); }
+  bool has_kinks() const override { return true; }
   std::string domain() const override {
     return fmt::format(", whose table reaches from {} to {}", table_.at.front(), table_.at.back());
   }
@@ -168,6 +169,7 @@ class Drive final : public CoordinateLaw<Coordinate> {
     bind();
   }
   std::unique_ptr<Element> clone() const override { return std::make_unique<Drive>(*this); }
+  bool has_kinks() const override { return true; }  // as far as is known
   Element::Role role() const override { return Element::Role::load; }
 
  private:
