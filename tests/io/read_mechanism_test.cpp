@@ -80,7 +80,8 @@ TEST(ReadMechanism, MakesBodiesJointsLawsAndLocks) {
   const system::Mechanism mechanism = built(crank);
   EXPECT_EQ(mechanism.coordinates(),
             (std::vector<std::string>{"crank.x", "crank.y", "crank.rz", "rod.x", "rod.y", "rod.rz"}));
-  EXPECT_EQ(mechanism.rows(), (std::vector<std::string>{"A.x", "A.y", "A.lock", "B.x", "B.y", "C.normal", "C.moment"}));
+  EXPECT_EQ(mechanism.rows(),
+            (std::vector<std::string>{"A.x", "A.y", "A.lock_moment", "B.x", "B.y", "C.normal", "C.moment"}));
   const auto& model = mechanism.model();
   ASSERT_EQ(model.joint_coordinates.size(), 3u);
   EXPECT_DOUBLE_EQ(model.joint_coordinates[0].s.value(mechanism.start().q.data()), 0.3);

@@ -215,7 +215,7 @@ class LockJoint final : public Joint {
   LockJoint(std::string name, const Coordinate& s, double at, int lock)
       : Joint(std::move(name)), s_(s), at_(at), lock_(lock) {
     places_ = s.places();
-    row_names_ = {"lock"};
+    row_names_ = {s.is_angle() ? "lock_moment" : "lock_force"};
   }
   std::unique_ptr<Joint> clone() const override { return std::make_unique<LockJoint>(*this); }
 

@@ -63,7 +63,7 @@ std::unique_ptr<Element> make_joint_drive(std::string name, const PlaneCoordinat
 std::unique_ptr<Element> make_joint_table(std::string name, const PlaneCoordinate& s, CoordinateTable table,
                                           const AtLock& when = {});
 
-/// s = at while the lock is engaged; nothing while it is open. Row "lock" [N m] or [N].
+/// s = at while the lock is engaged; nothing while it is open. Row "lock_moment" [N m] or "lock_force" [N].
 std::unique_ptr<Joint> make_lock_joint(std::string name, const PlaneCoordinate& s, double at, int lock);
 
 }  // namespace rubato::model
