@@ -170,16 +170,31 @@ class MechanismStepper final : public Stepper {
     usual_ = equations_.factorise() ? static_cast<int>(equations_.redundant_rows(left).size()) : 0;
   }
 
+  /// Removes from the velocities what the constraints forbid, M dv + G^T impulse = 0. Newton's factors, which are
+  /// there, hold stiffness beside M: what stiff parts would give to the impulses makes reactions that the motion does
+  /// not have. Where that is not small M has factors of its own.
   void project(bool is_placed, system::State& to) {
     if (!is_placed) {
       equations_.go_to(to, model::Side::left);
       equations_.constraints(constraint_);
     }
+    find_velocity_change(to);
+    mechanism_.times_mass(force_, product_);
+    const double momentum = product_.norm();
+    equations_.add_constraint_force(constraint_, 1.0, product_);
+    if (!(product_.norm() <= foreign * momentum)) {
+      equations_.linearise({1.0, 0.0, 0.0, 0.0}, to.multiplier, force_, constraint_);
+      if (equations_.factorise()) find_velocity_change(to);
+    }
+    to.v += force_;
+  }
+
+  /// With the factors of now: force_ becomes dv, constraint_ the impulse.
+  void find_velocity_change(const system::State& to) {
     equations_.constraint_rate(to.v, constraint_);
     constraint_ = -constraint_;
     force_.setZero();
     equations_.solve(force_, constraint_);
-    to.v += force_;
   }
 
   /// The coordinate whose correction was not finite, or the largest.
@@ -199,6 +214,7 @@ class MechanismStepper final : public Stepper {
   static constexpr double round_off = 1e-6;   // of the tolerance: a first correction that says that nothing moves
   static constexpr double most_left = 0.9;    // of a first correction, by the matrix of the same iterate
   static constexpr double negligible = 1e-2;  // of the tolerance
+  static constexpr double foreign = 1e-2;     // of the momentum of a projection: what is no impulse of constraints
 
   GeneralizedAlpha p_;
   NewtonPlan plan_;
