@@ -193,47 +193,41 @@ type = "static"
   EXPECT_NEAR(moment * moment, 2.0 * thrust * std::sin(turn), 5e-3 * moment * moment);
 }
 
-// A double pendulum that a thrust lifts a little: modes leave out the part of the stiffness that has no potential, and
-// say so. A thrust that stays along z has one.
-TEST(SpaceFollowingForces, AreToldWhereModesLeaveThemOut) {
-  const auto warnings = [](const std::string& following) {
-    const MechanismStudy ran(R"(
-[[body]]
-name = "pendulum"
-mass = 1.0
-inertia = [0.1, 0.1, 0.1]
-position = [0.0, 0.0, -1.0]
-[[joint]]
-name = "pivot"
-type = "universal"
-between = ["ground", "pendulum"]
-at = [0.0, 0.0, 0.0]
-axis = [1.0, 0.0, 0.0]
-second_axis = [0.0, 1.0, 0.0]
-[[body]]
-name = "tip"
-mass = 1.0
-inertia = [0.1, 0.1, 0.1]
-position = [0.0, 0.0, -2.0]
-[[joint]]
-name = "knee"
-type = "revolute"
-between = ["pendulum", "tip"]
-at = [0.0, 0.0, -1.5]
-axis = [1.0, 0.0, 0.0]
-stiffness = 20.0
-[gravity]
-acceleration = [0.0, 0.0, -9.81]
-[[force]]
-on = "tip.z"
-expression = "1.0"
-)" + following + "[[analysis]]\nname = \"run\"\ntype = \"modes\"\nabout = \"static\"\n");
-    EXPECT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
-    return ran.report.warnings;
+/// Ziegler's pendulum: two rods of 1 m with masses of 2 and 1 kg at their ends and springs of 1 N m/rad, pressed by a
+/// force that stays along the second.
+std::string zieglers_pendulum(bool in_space, double force) {
+  const std::string z = in_space ? ", 0.0" : "", axis = in_space ? "axis = [0.0, 0.0, 1.0]\n" : "";
+  const auto body = [&](const std::string& name, double mass, double x) {
+    return "[[body]]\nname = \"" + name + "\"\nmass = " + std::to_string(mass) +
+           "\ninertia = " + (in_space ? "[1e-6, 1e-6, 1e-6]" : "1e-6") + "\nposition = [" + std::to_string(x) +
+           ", 0.0" + z + "]\n";
   };
-  EXPECT_TRUE(warnings("").empty());
-  ASSERT_EQ(warnings("following = true\n").size(), 1u);
-  EXPECT_THAT(warnings("following = true\n")[0], HasSubstr("the stiffness is not symmetric"));
+  const auto hinge = [&](const std::string& first, const std::string& second, double x) {
+    return "[[joint]]\ntype = \"revolute\"\nbetween = [\"" + first + "\", \"" + second + "\"]\nat = [" +
+           std::to_string(x) + ", 0.0" + z + "]\n" + axis + "stiffness = 1.0\n";
+  };
+  return body("inner", 2.0, 1.0) + body("outer", 1.0, 2.0) + hinge("ground", "inner", 0.0) +
+         hinge("inner", "outer", 1.0) + "[[force]]\non = \"outer.x\"\nfollowing = true\nexpression = \"-" +
+         std::to_string(force) + "\"\n[[analysis]]\nname = \"run\"\ntype = \"modes\"\nabout = \"static\"\n";
+}
+
+// With w = omega^2:  2 w^2 - (7 - 2 P) w + 1 = 0 (Ziegler 1952), which has no real solution from P = 7/2 - sqrt(2) on.
+TEST(FollowingForces, LetZieglersPendulumFlutter) {
+  for (const bool in_space : {false, true}) {
+    for (const double force : {1.1, 1.9, 2.08}) {
+      const MechanismStudy ran(zieglers_pendulum(in_space, force));
+      ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+      const double half = 0.25 * (7.0 - 2.0 * force), root = std::sqrt(half * half - 0.5);
+      EXPECT_NEAR(ran.at(0, "run", "angular_frequency"), std::sqrt(half - root), 1e-5) << force;
+      EXPECT_NEAR(ran.at(1, "run", "angular_frequency"), std::sqrt(half + root), 1e-5) << force;
+      for (const auto& warning : ran.report.warnings) ADD_FAILURE() << in_space << force << warning;
+    }
+    // w = 0.65 +- 0.27839 i, of which sqrt(-w) = 0.16897 -+ 0.82375 i.
+    const MechanismStudy fluttering(zieglers_pendulum(in_space, 2.2));
+    EXPECT_EQ(fluttering.report.status, analysis::RunStatus::failed);
+    EXPECT_THAT(fluttering.report.message, HasSubstr("flutters"));
+    EXPECT_THAT(fluttering.report.message, HasSubstr("as exp(0.169/s t)"));
+  }
 }
 
 TEST(SpaceFollowingForceFault, NamesWhatGoesWithIt) {

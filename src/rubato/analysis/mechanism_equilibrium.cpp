@@ -4,6 +4,7 @@
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
+#include <rubato/integrate/mechanism/mechanism_modes.hpp>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,10 @@ MechanismStatic equilibrium_near(const system::State& start, const system::Mecha
   result.state = std::move(found.state);
   result.is_found = found.is_found;
   result.is_stable = found.is_stable;
+  // Signs of pivots say nothing where loads have no potential, and the matrix is not symmetric.
+  constexpr Index most = 600;
+  if (found.is_found && !equations.is_symmetric() && mechanism.size() <= most)
+    result.is_stable = integrate::modes_about(equations, result.state, 1).is_stable;
   result.iterations = found.iterations;
   result.residual = found.residual;
   result.worst = found.worst;
@@ -107,7 +112,7 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   if (!report.message.empty()) {
     report.status = RunStatus::failed;
   } else if (!found.is_stable) {
-    report.findings.push_back("the equilibrium is not stable: a motion that the joints leave goes downhill from it");
+    report.findings.push_back("the equilibrium is not stable: a motion that the joints leave goes away from it");
   }
   return report;
 }

@@ -156,23 +156,21 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
                                           plan.reached->analysis, plan.reached->time));
   report.statistics = {{"freedoms", std::to_string(modes.freedoms)},
                        {"residual_free", fmt::format("{:.1e}", modes.found.residual)}};
-  constexpr double round_off = 1e-12;
-  if (modes.skew > round_off)
+  if (modes.leaves_out_skew)
     report.warnings.push_back(fmt::format(
         "the stiffness is not symmetric, by {:.2g} of its size: loads that follow their body have no potential "
-        "(nor has a configuration that is no equilibrium); these modes leave that part out, and tell nothing of "
-        "flutter, which a transient does",
+        "(nor has a configuration that is no equilibrium); with more than 400 freedoms these modes leave that part "
+        "out, and tell nothing of flutter, which a transient does",
         modes.skew));
   write_modes(name, plan.modes.observed, {{0, modes.found}}, context.sink);
   if (modes.freedoms == 0)
     report.message = "the joints leave no motion";
   else if (!modes.is_stable)
     report.message = fmt::format(
-        "the {0} is not stable: a motion that the joints leave goes downhill from it, exp({1:.4g}/s t) without "
-        "damping, and has no frequency; {2}",
+        "the {0} is not stable: a motion that the joints leave {3}, as exp({1:.4g}/s t); {2}",
         plan.about_equilibrium ? "equilibrium" : "configuration", modes.growth,
-        plan.about_equilibrium ? "begin beside it to be led to one that is"
-                               : "about = \"static\" leads to one that is");
+        plan.about_equilibrium ? "begin beside it to be led to one that is" : "about = \"static\" leads to one that is",
+        modes.flutters ? "flutters, which loads without a potential make" : "goes away from it");
   else if (plan.modes.count > modes.freedoms)
     report.message =
         fmt::format("{} modes were asked for, and the joints leave {} motions", plan.modes.count, modes.freedoms);

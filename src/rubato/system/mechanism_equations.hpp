@@ -55,6 +55,8 @@ class MechanismEquations {
   std::vector<Index> redundant_rows(double left = 1e-8) const;
   /// How many rows leave so little that E weighs a tenth and more: redundant, or in a configuration where they are.
   int hardly_held_rows() const;
+  /// Whether the matrix is symmetric whatever the state: in space it is not.
+  bool is_symmetric() const { return factor_.is_symmetric(); }
   /// Whether the last matrix was positive definite on the motions that the constraints leave (where it is symmetric).
   bool is_positive() const { return factor_.negative_pivots() <= mechanism_.constraint_count(); }
   /// Solves with the factors; (x, y) is overwritten by the solution.

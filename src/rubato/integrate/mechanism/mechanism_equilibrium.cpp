@@ -45,7 +45,11 @@ class Search {
     scale_ = stiffness_per_mass();
     double shift = first_shift * scale_, last = HUGE_VAL;
     for (found_.iterations = 0; found_.iterations < plan_.most_iterations; ++found_.iterations) {
-      if (!factorise(shift)) return found_;
+      if (!factorise(shift)) {
+        if (!std::isfinite(found_.residual) || !(shift < most_shift * scale_)) return found_;
+        shift *= 10.0;  // a pivot that vanishes does so with one shift
+        continue;
+      }
       const double norm = force_norm();
       const bool climbs = !equations_.is_positive() && shift < most_shift * scale_;
       const Correction correction = correct();
@@ -59,7 +63,7 @@ class Search {
       advance(correction);
       if (is_small(correction) && shift <= settled * scale_) {
         found_.is_found = true;
-        found_.is_stable = equations_.is_positive();
+        found_.is_stable = factorise(least_shift * scale_) && equations_.is_positive();
         return found_;
       }
       // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
@@ -82,7 +86,7 @@ class Search {
       advance(correction);
       if (!is_small(correction)) continue;
       found_.is_found = true;
-      found_.is_stable = equations_.is_positive();
+      found_.is_stable = factorise(least_shift * scale_, load) && equations_.is_positive();
       return found_;
     }
     return found_;
@@ -155,7 +159,8 @@ class Search {
     const double stiffness = std::abs((after - before).dot(along)) / step;
     equations_.external_force(after);
     const double loads = after.norm() * along.norm() / extent_;  // where only loads and constraints hold it
-    return std::max({stiffness, loads, 1e-300}) / mass;
+    const double most = std::max(stiffness, loads);
+    return most > 0.0 ? most / mass : 1.0;  // where nothing acts any scale serves
   }
 
   double force_norm() const { return std::hypot(force_.norm(), scale_ * constraint_.norm()); }

@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
+#include <rubato/numerics/eigen_unsymmetric.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -8,6 +9,9 @@
 
 namespace rubato::integrate {
 namespace {
+
+constexpr double round_off = 1e-13;      // of the stiffness, over its size
+constexpr Index most_unsymmetric = 400;  // seconds
 
 /// An orthonormal basis of the motions that the constraints leave [n x freedoms].
 Matrix motions_left(const SparseMatrix& jacobian) {
@@ -40,17 +44,35 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
   if (result.freedoms == 0) return result;
   const Matrix tangent = reduced(linear.stiffness, basis);
   result.skew = 0.5 * (tangent - tangent.transpose()).norm() / std::max(tangent.norm(), 1e-300);
-  const SparseMatrix mass = symmetric(reduced(mechanism.mass(), basis)), stiffness = symmetric(tangent);
-  // Generalised, so that the signs are those of omega^2; round-off of K makes no motion unstable.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> signs(Matrix(stiffness), Matrix(mass), Eigen::EigenvaluesOnly);
-  const Vector squares = signs.eigenvalues();
-  result.is_stable = squares[0] >= -1e-10 * squares.cwiseAbs().maxCoeff();
-  if (!result.is_stable) {
-    result.growth = std::sqrt(-squares[0]);
-    return result;
+  const Matrix mass = reduced(mechanism.mass(), basis), damping = reduced(linear.damping, basis);
+  if (result.skew > round_off && result.freedoms <= most_unsymmetric) {
+    result.found = numerics::lowest_unsymmetric_modes(tangent, damping, mass, result.freedoms);
+    auto& modes = result.found.modes;
+    // A motion that nothing resists comes out with the root of round-off where there is damping.
+    const double fastest = modes.empty() ? 0.0 : modes.back().angular_frequency;
+    const double nothing = damping.isZero(0.0) ? 0.0 : std::sqrt(round_off) * fastest;
+    for (const auto& mode : modes) {
+      const double growth = mode.eigenvalue.real();
+      if (!(growth > std::max(1e-9 * mode.angular_frequency, nothing)) || growth <= result.growth) continue;
+      result.growth = growth;
+      result.flutters = mode.eigenvalue.imag() > 0.0;
+    }
+    result.is_stable = result.growth == 0.0;
+    if (static_cast<Index>(modes.size()) > count) modes.resize(static_cast<std::size_t>(count));
+  } else {
+    const SparseMatrix even_mass = symmetric(mass), stiffness = symmetric(tangent);
+    // Generalised, so that the signs are those of omega^2; round-off of K makes no motion unstable.
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> signs(Matrix(stiffness), Matrix(even_mass),
+                                                                 Eigen::EigenvaluesOnly);
+    const Vector squares = signs.eigenvalues();
+    result.leaves_out_skew = result.skew > round_off;
+    result.is_stable = squares[0] >= -round_off * squares.cwiseAbs().maxCoeff();
+    if (!result.is_stable) result.growth = std::sqrt(-squares[0]);
+    if (result.is_stable)
+      result.found =
+          numerics::lowest_damped_modes(stiffness, symmetric(damping), even_mass, std::min(count, result.freedoms));
   }
-  result.found = numerics::lowest_damped_modes(stiffness, symmetric(reduced(linear.damping, basis)), mass,
-                                               std::min(count, result.freedoms));
+  if (!result.is_stable) result.found = {};
   for (auto& mode : result.found.modes) mode.shape = (basis * mode.shape).eval();
   return result;
 }
