@@ -161,6 +161,17 @@ TEST(TabulatedLaws, EndTheRunWhereTheyEnd) {
   EXPECT_EQ(verdict(radial_mass(false, law + ", beyond = \"zero\" }")), "");
 }
 
+// At rest on the last row and pushed outwards, no step that moves it has a force, and those that do not move it are no
+// longer than round-off: the run ends.
+TEST(TabulatedLaws, EndARunThatCannotLeaveTheLastRow) {
+  const TableFile file("rubato_struts_test_edge.csv", "length [m],force [N]\n4,72\n5,1\n");
+  std::string text = radial_mass(false, "force = { table = \"" + file.path() + "\" }");
+  text = replaced(text, "velocity = [1.8, 2.4]", "velocity = [0.0, 0.0]");
+  const MechanismStudy ran(text);
+  EXPECT_EQ(ran.report.status, analysis::RunStatus::failed);
+  EXPECT_LT(ran.table("run").rows.size(), 3000u);
+}
+
 TEST(TabulatedLaws, PointAtTheirFaults) {
   const auto says = [](const std::string& rows, const std::string& expected) {
     const TableFile file("rubato_struts_test_fault.csv", rows);
@@ -178,6 +189,8 @@ TEST(StrutFault, NamesTheKeyAndTheRemedy) {
   says("displacement = 2.0", "\"displacement\" belongs to a prismatic joint, and this one is strut");
   says("axis = [1.0, 0.0]", "\"axis\" belongs to a");
   says("friction = { coefficient = 0.3, normal_load = \"reaction\" }", "no reaction presses on what slides");
+  says("lock = { at = 0.0, kind = \"stop\" }", "lock: at is a length and must be positive, got 0");
+  says("stiffness = 1.0\nrest = -1.0", "rest must not be negative, got -1");
   says("stiffness = -1.0", "joint \"strut\": stiffness must not be negative");
   says("force = \"2*displacement\"", "joint \"strut\": force: in the expression");
   EXPECT_THAT(verdict(replaced(radial_mass(false, "stiffness = 1.0"), "at = [0.0, 0.0]", "at = [3.0, 4.0]")),

@@ -150,7 +150,17 @@ class Marcher {
     else if (!is_event)
       wanted_ = std::max(wanted_, decision.next);
     accept(length, error);
+    if (crawls(length.step)) return fail({StepOutcome::too_small, -1}, length.step);
     if (is_event && base_.t < end_ && goes_on_) pass_event();
+  }
+
+  /// Whether steps have been so short for so long that the run would not end: of a run that takes longer steps at all.
+  bool crawls(double step) {
+    constexpr double share = 1e4;  // of the resolution, 1e-12 of the run
+    constexpr int most = 2000;
+    const double nothing = share * timeline_.resolution();
+    crawling_ = step < nothing && plan_.largest > 100.0 * nothing ? crawling_ + 1 : 0;
+    return crawling_ > most;
   }
 
   /// One try from base_; a failure shortens the next.
@@ -277,6 +287,7 @@ class Marcher {
   double part_ = 0.0;                 // the last step since the last breakpoint
   std::array<double, 16> lengths_{};  // of the last steps, the last first
   ControlHistory history_;
+  int crawling_ = 0;  // steps in a row
   bool goes_on_ = true;
   AdaptiveReport report_;
 };

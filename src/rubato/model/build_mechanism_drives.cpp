@@ -26,6 +26,9 @@ Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, c
     throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
                                                 "comes by another {}",
                                                 part, lock.at, is_angle ? "angle" : "displacement"));
+  if (joint.type == JointDescription::Type::strut && !(lock.at > 0.0))
+    throw InvalidInput(given.at.where,
+                       fmt::format("{}: lock: at is a length and must be positive, got {}", part, lock.at));
   lock.sign = lock.at > value ? 1.0 : -1.0;
   return lock;
 }

@@ -42,12 +42,34 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   take_laws(assembly, joint, part, s, value, take_lock(assembly, joint, part, s, value));
 }
 
+/// A mass that does not turn has no axes with which a joint could do more than hold its place.
+void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                  const JointPlaces& places) {
+  using Type = JointDescription::Type;
+  const bool has_law = joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping ||
+                       joint.lock || joint.friction;
+  const bool holds_points_only =
+      joint.type == Type::distance || joint.type == Type::strut || (joint.type == Type::revolute && !has_law);
+  for (std::size_t end = 0; end < 2; ++end) {
+    const Index node = places.node[end];
+    if (assembly.has_axes(node)) continue;
+    if (holds_points_only && places.at[end] == assembly.position(node)) continue;
+    throw InvalidInput(
+        joint.between_where[end],
+        fmt::format("{} joins \"{}\", a mass that does not turn, by more than its place; give its "
+                    "[[mass]] \"inertia\", or take a distance joint, a strut, or a revolute joint without "
+                    "laws at the node itself",
+                    part, joint.between[end]));
+  }
+}
+
 }  // namespace
 
 void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint) {
   using Type = JointDescription::Type;
   const std::string part = fmt::format("joint \"{}\"", joint.name);
   const JointPlaces places = take_places(assembly, joint, part);
+  require_axes(assembly, joint, part, places);
   Mechanism& mechanism = assembly.mechanism;
   const PlanePoint a = mechanism.plane_point(places.node[0], places.at[0][0], places.at[0][1]);
   const PlanePoint b = mechanism.plane_point(places.node[1], places.at[1][0], places.at[1][1]);

@@ -92,7 +92,7 @@ Axis MechanismAssembly::position(Index node) const {
 bool MechanismAssembly::has_axes(Index node) const {
   const MechanismNode& n = mechanism.nodes[static_cast<std::size_t>(node)];
   if (node == 0) return true;
-  for (std::size_t axis = 3; axis < 6; ++axis)
+  for (std::size_t axis = in_plane() ? 5 : 3; axis < 6; ++axis)
     if (n.place[axis] == ground && fixed.count(n.name + "." + axis_names[axis]) == 0) return false;
   return true;
 }

@@ -69,7 +69,10 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
   }
   if (joint.drive_table) elements.push_back(make_joint_table(joint.name, s, table_of(joint, part), when));
   if (joint.stiffness) {
-    const double rest = joint.rest ? assembly.number(*joint.rest, part + ": rest") : value;
+    const bool is_length = joint.type == JointDescription::Type::strut;
+    const double rest = !joint.rest ? value
+                        : is_length ? assembly.at_least_zero(*joint.rest, part + ": rest")
+                                    : assembly.number(*joint.rest, part + ": rest");
     elements.push_back(
         make_joint_spring(joint.name, s, assembly.at_least_zero(*joint.stiffness, part + ": stiffness"), rest));
   }
