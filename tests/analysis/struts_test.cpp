@@ -37,6 +37,7 @@ TEST(Strut, SwingsAMassAlongItsLine) {
     const double length = 5.0 + 0.5 * std::sin(6.0);
     EXPECT_NEAR(ran.at(0, "run", "displacement", "strut"), 5.0, 1e-14);
     EXPECT_NEAR(ran.last("run", "displacement", "strut"), length, 1e-5);
+    EXPECT_NEAR(ran.last("run", "law_force", "strut"), -72.0 * (ran.last("run", "displacement", "strut") - 5.0), 1e-9);
     EXPECT_NEAR(ran.last("run", "position", "m.x"), 0.6 * length, 1e-5);
     EXPECT_NEAR(ran.last("run", "position", "m.y"), 0.8 * length, 1e-5);
     EXPECT_NEAR(ran.last("run.energy", "residue"), 0.0, 1e-4);

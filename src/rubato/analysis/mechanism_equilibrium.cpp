@@ -1,4 +1,5 @@
 #include <rubato/analysis/joint_coordinates.hpp>
+#include <rubato/analysis/joint_laws.hpp>
 #include <rubato/analysis/joint_reactions.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
@@ -87,11 +88,13 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   const MechanismStatic found = equilibrium_near(start, mechanism);
   JointCoordinates joints(mechanism);
   JointReactions reactions(mechanism);
+  JointLaws laws(mechanism);
   const ObservedBlocks observed(joints.with_angles(observed_or_all(description.observe, mechanism)));
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   observed.add(layout, {ObservedBlocks::Quantity::position});
   joints.add_displacements(layout);
   reactions.add(layout);
+  laws.add(layout);
   joints.go_to(found.state);
   Vector positions;
   joints.positions(positions);
@@ -99,6 +102,7 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   observed.append({&positions}, row);
   joints.append_displacements(row);
   reactions.append(joints.motion(), found.state.multiplier, row);
+  laws.append(joints.motion(), row);
   if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
     context.sink.open(layout)->append(row);
   report.statistics = {{"iterations", std::to_string(found.iterations)},

@@ -22,6 +22,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
       observed_(joints_.with_angles(plan.transient.observed)),
       reactions_(mechanism),
       frictions_(mechanism),
+      laws_(mechanism),
       equations_(mechanism) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time = scalar("time", "s", "time");
@@ -38,6 +39,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
   joints_.add_displacements(layout);
   reactions_.add(layout);
   frictions_.add(layout);
+  laws_.add(layout);
   rows_ = sink.open(layout);
   if (!plan.transient.energy) return;
   energy_rows_ =
@@ -69,6 +71,7 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
   reactions_.append(joints_.motion(), balanced_.multiplier, row_);
   equations_.go_to(balanced_, model::Side::right);
   frictions_.append(equations_, balanced_.multiplier, row_);
+  laws_.append(joints_.motion(), row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;

@@ -2,6 +2,7 @@
 
 #include <rubato/analysis/joint_coordinates.hpp>
 #include <rubato/analysis/joint_frictions.hpp>
+#include <rubato/analysis/joint_laws.hpp>
 #include <rubato/analysis/joint_reactions.hpp>
 #include <rubato/analysis/mechanism_ledger.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
@@ -36,6 +37,7 @@ class MechanismRecorder {
   ObservedBlocks observed_;
   JointReactions reactions_;
   JointFrictions frictions_;
+  JointLaws laws_;
   system::MechanismEquations equations_;
   system::State balanced_;
   Vector positions_, velocities_, accelerations_;

@@ -201,7 +201,7 @@ function write_transient(chapter, analysis) {
     add_section(chapter, "Joint reactions", history_figure(table, reactions, "What each joint does to its second part"));
   }
   if (efforts.length) {
-    add_section(chapter, "Friction and drives of joints", history_figure(table, efforts, "Forces and moments of friction and drives"));
+    add_section(chapter, "Laws, friction and drives of joints", history_figure(table, efforts, "Forces and moments of laws, friction and drives"));
   }
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
