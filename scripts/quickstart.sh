@@ -11,4 +11,6 @@ command=build/release/apps/rubato/rubato
 
 echo
 echo "The report is $PWD/results/underplatform-damper/report.html: open it in a browser."
-echo "The command is $PWD/$command: try '$command example' for more studies."
+echo "The command is $PWD/$command. To call it by its name:"
+echo "  export PATH=$PWD/$(dirname "$command"):\$PATH"
+echo "Then 'rubato example' lists more studies, and docs/tutorial/README.md is the tutorial."
