@@ -173,6 +173,17 @@ TEST(TabulatedLaws, EndARunThatCannotLeaveTheLastRow) {
   EXPECT_LT(ran.table("run").rows.size(), 3000u);
 }
 
+// Rows that end where a lock is say all that is needed.
+TEST(TabulatedLaws, EndAtALock) {
+  const TableFile file("rubato_struts_test_lock.csv", "length [m],force [N]\n4,72\n5,0\n5.2,-14.4\n");
+  const std::string law = "force = { table = \"" + file.path() + "\" }\nlock = { at = 5.2, ";
+  for (const std::string lock : {"kind = \"stop\" }", "kind = \"latch\" }", "kind = \"stop\", stiffness = 1e4 }"}) {
+    const MechanismStudy ran(radial_mass(false, law + lock));
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::done) << lock << ran.report.message;
+    EXPECT_NEAR(ran.at(0, "run.events", "time"), std::asin(0.4) / 6.0, 1e-6) << lock;
+  }
+}
+
 TEST(TabulatedLaws, PointAtTheirFaults) {
   const auto says = [](const std::string& rows, const std::string& expected) {
     const TableFile file("rubato_struts_test_fault.csv", rows);

@@ -82,7 +82,8 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
   return law;
 }
 
-CoordinateTable table_of(const JointDescription& joint, const std::string& part) {
+CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                         double value) {
   const TableDescription& table = *joint.drive_table;
   for (std::size_t i = 1; i < table.times.size(); ++i)
     if (!(table.times[i] > table.times[i - 1]))
@@ -91,7 +92,13 @@ CoordinateTable table_of(const JointDescription& joint, const std::string& part)
   const auto beyond = table.beyond == TableDescription::Beyond::hold   ? CoordinateTable::Beyond::hold
                       : table.beyond == TableDescription::Beyond::zero ? CoordinateTable::Beyond::zero
                                                                        : CoordinateTable::Beyond::error;
-  return make_table(table.times, table.values, beyond);
+  CoordinateTable law = make_table(table.times, table.values, beyond);
+  if (beyond != CoordinateTable::Beyond::error || !joint.lock) return law;
+  // Up to a lock the rows need reach no further: what lies beyond is looked at, and not kept.
+  const double lock = assembly.number(joint.lock->at, part + ": lock: at");
+  if (lock > value && lock <= law.at.back()) law.after = CoordinateTable::Beyond::hold;
+  if (lock < value && lock >= law.at.front()) law.before = CoordinateTable::Beyond::hold;
+  return law;
 }
 
 void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,

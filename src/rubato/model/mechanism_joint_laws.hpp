@@ -44,7 +44,9 @@ AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, con
                  const FreeCoordinate& s, double value);
 
 /// The table of a joint's moment or force over its coordinate.
-CoordinateTable table_of(const JointDescription& joint, const std::string& part);
+/// @param value  of the coordinate in the configuration given
+CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                         double value);
 
 /// The drive, the law of a moment or force, the spring and the damper.
 /// @param s      with its zero
@@ -67,7 +69,8 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
                          fmt::format("{}: {}: {}", part, s.is_angle() ? "moment" : "force", fault.message()));
     }
   }
-  if (joint.drive_table) elements.push_back(make_joint_table(joint.name, s, table_of(joint, part), when));
+  if (joint.drive_table)
+    elements.push_back(make_joint_table(joint.name, s, table_of(assembly, joint, part, value), when));
   if (joint.stiffness) {
     const bool is_length = joint.type == JointDescription::Type::strut;
     const double rest = !joint.rest ? value

@@ -8,11 +8,12 @@ namespace rubato::model {
 
 CoordinateTable::Value CoordinateTable::operator()(double s) const {
   if (!(s >= at.front() && s <= at.back())) {
+    const bool is_before = s < at.front();
+    const Beyond beyond = is_before ? before : after;
     if (beyond == Beyond::error) {
       constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
       return {unknown, unknown, unknown};
     }
-    const bool is_before = s < at.front();
     const double end = is_before ? at.front() : at.back(), stored = is_before ? potential.front() : potential.back();
     if (beyond == Beyond::zero) return {0.0, 0.0, stored};
     const double held = is_before ? force.front() : force.back();
@@ -25,7 +26,7 @@ CoordinateTable::Value CoordinateTable::operator()(double s) const {
 }
 
 CoordinateTable make_table(std::vector<double> at, std::vector<double> force, CoordinateTable::Beyond beyond) {
-  CoordinateTable table{std::move(at), std::move(force), {0.0}, beyond};
+  CoordinateTable table{std::move(at), std::move(force), {0.0}, beyond, beyond};
   double lowest = 0.0;
   for (std::size_t i = 1; i < table.at.size(); ++i) {
     const double way = table.at[i] - table.at[i - 1], before = table.force[i - 1], after = table.force[i];

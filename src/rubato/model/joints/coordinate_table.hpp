@@ -12,7 +12,7 @@ struct CoordinateTable {
   std::vector<double> at;         ///< s, strictly rising, two or more [rad] or [m]
   std::vector<double> force;      ///< on s [N m] or [N]
   std::vector<double> potential;  ///< -(integral of the force over s), lowest 0, at the rows [J]; see make_table
-  Beyond beyond = Beyond::error;
+  Beyond before = Beyond::error, after = Beyond::error;
 
   struct Value {
     double force = 0.0, slope = 0.0, potential = 0.0;
