@@ -51,6 +51,7 @@ TEST(DrivesAtRest, HoldTheWeightInAStaticState) {
   ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
   EXPECT_NEAR(ran.last("rest", "angle", "motor"), 0.0, 1e-9);
   EXPECT_NEAR(ran.last("rest", "drive_moment", "motor"), moment_of_weight, 1e-7);
+  for (const std::string& warning : ran.report.warnings) ADD_FAILURE() << warning;  // of velocities, which it takes not
 }
 
 TEST(DrivesAtRest, LeaveTheModesOfWhatHangsOnThem) {

@@ -84,7 +84,7 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
                                RunContext& context) {
   check_mechanism_static(name, where, description, mechanism);
   RunReport report;
-  const system::State start = assembled_start(where, mechanism, report.warnings);
+  const system::State start = assembled_start(where, mechanism, report.warnings, false);
   const MechanismStatic found = equilibrium_near(start, mechanism);
   JointCoordinates joints(mechanism);
   JointReactions reactions(mechanism);

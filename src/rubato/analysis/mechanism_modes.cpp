@@ -128,7 +128,7 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
     plan.warnings = plan.reached->motion.warnings;
     return plan;
   }
-  plan.state = assembled_start(where, mechanism, plan.warnings);
+  plan.state = assembled_start(where, mechanism, plan.warnings, false);
   if (!description.about_equilibrium) {
     plan.state = at_rest(plan.state, mechanism, plan.warnings);
     return plan;

@@ -151,7 +151,7 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, sys
 }  // namespace
 
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
-                              std::vector<std::string>& warnings) {
+                              std::vector<std::string>& warnings, bool moves) {
   system::MechanismEquations equations(mechanism);
   const auto start = integrate::make_consistent(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
@@ -188,7 +188,7 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
         fmt::format("the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
                     "{:.4g}",
                     coordinate(start.most_moved), start.position_moved));
-  if (start.most_changed >= 0)
+  if (moves && start.most_changed >= 0)
     warnings.push_back(fmt::format(
         "the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
         "{:.4g}, which {} {:.4g} J",

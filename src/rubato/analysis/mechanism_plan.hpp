@@ -20,8 +20,9 @@ struct MechanismPlan {
 
 /// The start of a mechanism on its constraints. What had to move, and constraints that repeat others, are told in
 /// `warnings`. Throws InvalidInput, naming the joints and by how much they are apart, where they cannot be assembled.
+/// @param moves  what starts there goes on with its velocities: that they had to change is told
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
-                              std::vector<std::string>& warnings);
+                              std::vector<std::string>& warnings, bool moves = true);
 
 /// What is asked for, or every coordinate: displacements, then rotations. Throws InvalidInput for an unknown name.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
