@@ -152,7 +152,8 @@ class MechanismStepper final : public Stepper {
   /// @param is_placed  the last correction moves nothing: `to`, and G, stand where they shall
   StepReport finish(const system::State& from, double h, bool is_placed, system::State& to) {
     if (!is_placed) place(from, h, to);
-    if (plan_.projects_velocities && constraint_.size() > 0) project(is_placed, to);
+    if (plan_.projects_velocities && constraint_.size() > 0 && !project(is_placed, to))
+      return fault(StepOutcome::singular);
     if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite()) return {};
     return fault(StepOutcome::not_finite);
   }
@@ -172,8 +173,8 @@ class MechanismStepper final : public Stepper {
 
   /// Removes from the velocities what the constraints forbid, M dv + G^T impulse = 0. Newton's factors, which are
   /// there, hold stiffness beside M: what stiff parts would give to the impulses makes reactions that the motion does
-  /// not have. Where that is not small M has factors of its own.
-  void project(bool is_placed, system::State& to) {
+  /// not have. Where that is not small M has factors of its own; false where it has none.
+  bool project(bool is_placed, system::State& to) {
     if (!is_placed) {
       equations_.go_to(to, model::Side::left);
       equations_.constraints(constraint_);
@@ -184,9 +185,11 @@ class MechanismStepper final : public Stepper {
     equations_.add_constraint_force(constraint_, 1.0, product_);
     if (!(product_.norm() <= foreign * momentum)) {
       equations_.linearise({1.0, 0.0, 0.0, 0.0}, to.multiplier, force_, constraint_);
-      if (equations_.factorise()) find_velocity_change(to);
+      if (!equations_.factorise()) return false;
+      find_velocity_change(to);
     }
     to.v += force_;
+    return true;
   }
 
   /// With the factors of now: force_ becomes dv, constraint_ the impulse.
