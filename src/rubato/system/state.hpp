@@ -23,6 +23,10 @@ struct State {
   std::vector<int> phase;    ///< of each lock (model::LockPhase): its history
   std::vector<int> rubbing;  ///< of each joint with friction (model::FrictionPhase): its history
   Vector stuck_at;           ///< where each of them last stuck [rad] or [m]
+  /// What a first correction of Newton's method may be taken to leave of the error, by the last step that measured it
+  /// [-]; 1: not known
+  double contraction = 1.0;
+  double correction = 0.0;  ///< the size of that correction [m sqrt(kg)]
 };
 
 }  // namespace rubato::system

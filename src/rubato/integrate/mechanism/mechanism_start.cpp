@@ -60,6 +60,7 @@ bool balance(system::MechanismEquations& equations, system::State& state, model:
     if (!state.acceleration.allFinite() || !state.multiplier.allFinite()) return false;
     if (is_linear || (state.multiplier - last).norm() <= 1e-12 * state.multiplier.norm()) {
       state.auxiliary_acceleration = state.acceleration;
+      state.contraction = 1.0;
       return true;
     }
   }

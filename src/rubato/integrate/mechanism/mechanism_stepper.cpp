@@ -74,10 +74,14 @@ class MechanismStepper final : public Stepper {
       if (!std::isfinite(size)) return fault(StepOutcome::not_finite);
       to.multiplier += (1.0 / scale_) * constraint_;
       // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
-      // Newton's own matrix leaves less than nine tenths of a first correction; but not across a kink, where the
-      // acceleration of a short step would be made of what is left.
-      const bool is_known = is_smooth_ || size <= round_off * tolerance_;
-      const double ratio = iteration > 0 ? size / last : is_known ? most_left : 1.0;
+      const double ratio = iteration > 0 ? size / last : first_ratio(from, size);
+      if (iteration == 0) {
+        to.contraction = growth * from.contraction;
+        to.correction = from.correction;
+      } else if (iteration == 1) {
+        to.contraction = safety * ratio;
+        to.correction = last;
+      }
       const double before = ratio < 1.0 ? size / (1.0 - ratio) : HUGE_VAL;  // the error without this correction
       const bool is_placed = iteration > 0 && before <= negligible * tolerance_;
       if (!is_placed) {
@@ -102,6 +106,16 @@ class MechanismStepper final : public Stepper {
   int factorisations() const override { return equations_.factorisations(); }
 
  private:
+  /// What a first correction leaves of the error. With Newton's own matrix less than nine tenths, but not across a
+  /// kink, where the acceleration of a short step would be made of what is left; and what a step before measured, in
+  /// proportion to the correction where that is larger (Newton's method is quadratic: Deuflhard 2004, 2.1). Each step
+  /// that relies on it trusts it less (as in Hairer and Wanner 1996, IV.8).
+  double first_ratio(const system::State& from, double size) const {
+    if (size <= round_off * tolerance_) return most_left;
+    if (!is_smooth_) return 1.0;
+    return std::min(most_left, from.contraction * std::max(1.0, size / from.correction));
+  }
+
   /// The travel if the acceleration goes on changing as the two that the state carries say: A stands shift h from a, so
   /// that (A - a)/shift is its change in a step. What Newton then corrects is of fourth order in h. Where it is no
   /// small part of A itself, vibrations are faster than the steps, and it says nothing.
@@ -217,6 +231,8 @@ class MechanismStepper final : public Stepper {
   static constexpr double round_off = 1e-6;   // of the tolerance: a first correction that says that nothing moves
   static constexpr double most_left = 0.9;    // of a first correction, by the matrix of the same iterate
   static constexpr double negligible = 1e-2;  // of the tolerance
+  static constexpr double safety = 10.0;      // on the measured share that a first correction leaves
+  static constexpr double growth = 1.2;       // of that share in each step that relies on it
   static constexpr double foreign = 1e-2;     // of the momentum of a projection: what is no impulse of constraints
 
   GeneralizedAlpha p_;
