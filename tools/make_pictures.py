@@ -47,7 +47,8 @@ PICTURES = {
     "slider-crank-flexible": {"drive": ("Forces and moments of laws, friction and drives", 1, {"Quantity": "Drive moment"})},
     "deployable-panel": {"positions": [0.0, 0.6, 1.07, 1.5, 1.84, 4.5], "angles": (ROTATIONS, 1, {"Lines": ["wall", "first", "second"]}),
                          "energy": "Energy ledger"},
-    "hatch": {"positions": [0.0, 0.2, 0.4, 0.6], "angle": (ROTATIONS, 1, {"Lines": ["hinge"]}), "energy": "Energy ledger"},
+    "hatch": {"positions": [0.0, 0.2, 0.4, 0.6], "angle": (ROTATIONS, 1, {"Lines": ["hinge"]}), "energy": "Energy ledger",
+              "mode": "A mode of the mechanism"},
     "door-on-two-hinges": {"angle": (ROTATIONS, 1, {"Lines": ["upper hinge"]}),
                            "reactions": ("What each joint does", 1, {"Quantity": "Reaction x"})},
     "heavy-top": {"motion": MOTION},
@@ -84,6 +85,7 @@ return true;
 
 SAVE = """
 const plot = document.querySelector(`#figure-${arguments[0]} .plot`);
+if (!plot) return document.querySelector(`#figure-${arguments[0]} canvas`).toDataURL('image/png');
 return Plotly.toImage(plot, {format: 'png', width: arguments[1], height: plot.clientHeight, scale: 1});
 """
 

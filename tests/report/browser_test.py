@@ -341,6 +341,64 @@ class Report(unittest.TestCase):
         time.sleep(0.3)
         self.assertEqual(self.browser.script(moment), stopped)
 
+    def test_a_mode_of_a_mechanism_swings_about_its_configuration(self):
+        number = self.browser.script("""
+            const figure = [...document.querySelectorAll('figure')].find((candidate) =>
+              candidate.textContent.includes('A mode of the mechanism (2 nodes, 1 line)'));
+            figure.scrollIntoView({behavior: 'instant'});
+            return figure.id.replace('figure-', '')""")
+        figure = f"document.querySelector('#figure-{number}')"
+        self.browser.wait(f"return {figure}.querySelector('canvas').width > 300")
+
+        def extremes():
+            """Leftmost, rightmost, highest and lowest pixel of the line that moves, in pixels of the page."""
+            return self.browser.script(f"""
+                const canvas = {figure}.querySelector('canvas'), copy = document.createElement('canvas');
+                [copy.width, copy.height] = [canvas.width, canvas.height];
+                const pen = copy.getContext('2d', {{willReadFrequently: true}});
+                pen.drawImage(canvas, 0, 0);
+                const {{data}} = pen.getImageData(0, 0, canvas.width, canvas.height);
+                const seen = [Infinity, -Infinity, Infinity, -Infinity];
+                for (let i = 0; i < data.length; i += 4) {{
+                  if (data[i] !== 11 || data[i + 1] !== 79 || data[i + 2] !== 124) continue;
+                  const [x, y] = [i / 4 % canvas.width, Math.floor(i / 4 / canvas.width)];
+                  seen[0] = Math.min(seen[0], x); seen[1] = Math.max(seen[1], x);
+                  seen[2] = Math.min(seen[2], y); seen[3] = Math.max(seen[3], y);
+                }}
+                return seen""")
+
+        def put(selector, value):
+            self.browser.script(f"""
+                const input = {figure}.querySelector(arguments[0]);
+                input.value = arguments[1];
+                input.dispatchEvent(new Event('input'))""", selector, str(value))
+
+        moment = "input[aria-label=Moment]"
+        left, right, top, low = extremes()
+        put(moment, 15)  # a quarter of a period later it passes the configuration: a level line from the pin
+        level_left, level_right, level_top, level_low = extremes()
+        self.assertLess(level_low - level_top, 8)
+        self.assertAlmostEqual(left, level_left, delta=4, msg="the pin holds it")
+        self.assertGreater(level_top - top, 0.08 * (right - left), "a tenth of its size")
+        self.assertLess(abs(low - level_low), 5)
+        put(moment, 0)
+        put(".amplitude", 0.05)
+        self.assertAlmostEqual(level_top - extremes()[2], 0.5 * (level_top - top), delta=4, msg="half as far")
+
+        options = self.browser.script(f"return [...{figure}.querySelectorAll('select[aria-label=Mode] option')].map((one) => one.text)")
+        self.assertEqual(options, ["Mode 1: 0.9549 Hz (6 rad/s), damping ratio 0.02",
+                                   "Mode 2: 1.592 Hz (10 rad/s), grows as exp(0.5 t)"])
+        self.browser.script(f"""
+            const list = {figure}.querySelector('select[aria-label=Mode]');
+            list.selectedIndex = 1;
+            list.dispatchEvent(new Event('change'))""")
+        # Around a circle: at the start up, a quarter later to the left, since Re(i exp(i pi/2)) = -1.
+        first = extremes()
+        put(moment, 15)
+        second = extremes()
+        self.assertGreater(second[3] - first[3], 20)
+        self.assertGreater(first[0] - second[0], 20)
+
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))
 

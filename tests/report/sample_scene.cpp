@@ -39,4 +39,56 @@ void add_scene(results::Sink& sink) {
   sink.conclude(name, "done", "", {});
 }
 
+void add_mechanism_modes(results::Sink& sink) {
+  const std::string name = "swinging";
+  const std::vector<std::string> nodes{"bob", "bob:2"};
+  const auto number = [](const char* column) { return results::Block{column, "1", "", "", {}}; };
+  results::Block limit = number("limit");
+  limit.categories = {"free", "stuck"};
+  results::TableLayout modes{name,
+                             "",
+                             "row",
+                             {limit, number("mode"), number("angular_frequency"), number("frequency"),
+                              number("damping_ratio"), number("eigenvalue_real"), number("eigenvalue_imaginary")},
+                             {{"type", "modes"}}};
+  modes.blocks.push_back({"shape", "1/sqrt(kg)", "", "coordinate", {"bob.x", "bob.y"}});
+  modes.blocks.push_back({"angle_shape", "rad/(m sqrt(kg))", "", "rotation", {"bob.rz"}});
+  modes.blocks.push_back({"shape_imaginary", "1/sqrt(kg)", "", "coordinate", {"bob.x", "bob.y"}});
+  modes.blocks.push_back({"angle_shape_imaginary", "rad/(m sqrt(kg))", "", "rotation", {"bob.rz"}});
+  // About the pin, which is told in the first; in the second along x, a quarter of a period ahead of along y, and
+  // growing.
+  add_table(sink, modes,
+            {{0, 1, 6.0, 6.0 / (2.0 * std::numbers::pi), 0.02, -0.12, 6.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0},
+             {0, 2, 10.0, 10.0 / (2.0 * std::numbers::pi), -0.05, 0.5, 10.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0}});
+  add_table(sink,
+            {name,
+             "nodes",
+             "node",
+             {{"node", "1", "", "", {}, nodes},
+              {"x", "m", "", "", {}},
+              {"y", "m", "", "", {}},
+              {"z", "m", "", "", {}},
+              {"support", "1", "", "", {}, {"free", "held", "pinned", "clamped"}},
+              number("carrier"),
+              number("offset_x"),
+              number("offset_y"),
+              number("offset_z"),
+              number("rotation_x"),
+              number("rotation_y"),
+              number("rotation_z")},
+             {{"type", "nodes"}, {"motion", "shape"}, {"degrees_of_freedom", "3"}}},
+            {{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.5}, {1, 0, 0, 0, 0, 0, -0.07073720166, 0.9974949866, 0, 0, 0, 1.5}});
+  add_table(sink,
+            {name,
+             "lines",
+             "line",
+             {{"line", "1", "", "", {}},
+              {"first", "1", "", "", {}, nodes},
+              {"second", "1", "", "", {}, nodes},
+              {"kind", "1", "", "", {}, {"beam", "body", "link"}}},
+             {}},
+            {{1, 0, 1, 1}});
+  sink.conclude(name, "failed", "the configuration is not stable", {});
+}
+
 }  // namespace rubato::test

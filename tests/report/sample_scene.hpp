@@ -9,4 +9,9 @@ namespace rubato::test {
 /// and turn.
 void add_scene(results::Sink& sink);
 
+/// An analysis "swinging" of modes of a mechanism that is not stable: a body at (1, 0), whose axes are turned, carried
+/// by a pin in the origin. In the first it swings about the pin; in the second, which grows, it goes around in a
+/// circle.
+void add_mechanism_modes(results::Sink& sink);
+
 }  // namespace rubato::test

@@ -34,7 +34,8 @@ TEST(SceneJson, TellsWhereNodesAreAndWhatJoinsThem) {
   EXPECT_THAT(scene, HasSubstr(R"("support":["clamped","free","free"],"lines":[[0,1],[1,2]],"kinds":[])"));
   EXPECT_THAT(
       scene,
-      HasSubstr(R"("is_absolute":false,"carrier":[],"offset":[[],[],[]],"places":[[1,1,2,2,1,2],[0,1,0,1,5,5]])"));
+      HasSubstr(
+          R"("is_absolute":false,"carrier":[],"offset":[[],[],[]],"rotation":[[],[],[]],"places":[[1,1,2,2,1,2],[0,1,0,1,5,5]])"));
 }
 
 TEST(SceneJson, HoldsTheMotionOfEveryPlaceInEachFrame) {
@@ -45,6 +46,13 @@ TEST(SceneJson, HoldsTheMotionOfEveryPlaceInEachFrame) {
 
 TEST(SceneJson, ChoosesFramesEvenlyInTime) {
   EXPECT_THAT(scene_of(test::add_scene, {3, 1000}), HasSubstr(R"("rows":[0,5,10],"coordinate":[0,0.5,1])"));
+}
+
+TEST(SceneJson, HoldsShapesAboutAConfigurationWithTheAxesOfItsNodes) {
+  const std::string scene = scene_of(test::add_mechanism_modes);
+  EXPECT_THAT(scene, HasSubstr(R"("kinds":["body"],"is_absolute":false,"carrier":[0,0])"));
+  EXPECT_THAT(scene, HasSubstr(R"("rotation":[[0,0],[0,0],[1.5,1.5]])"));
+  EXPECT_THAT(scene, HasSubstr(R"("values":[[0,2,2],[0,1,0]],"imaginary":[[0,0,0],[1,0,0]])"));
 }
 
 TEST(SceneJson, DrawsNothingWhereADegreeOfFreedomWasNotKept) {

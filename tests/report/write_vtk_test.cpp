@@ -56,6 +56,17 @@ TEST_F(WriteVtk, MovesTheNodesAndKeepsTheLines) {
   EXPECT_THAT(frame, HasSubstr("\n0 1\n1 2\n"));
 }
 
+// A unit of a mode's size is drawn: a body 1 m from its pin turns by 2 about it, so that it rises by 2, and the pin
+// stays.
+TEST_F(WriteVtk, MovesABodyAboutItsPinInAMode) {
+  {
+    io::NetcdfSink sink(folder_ / "modes.nc", {});
+    test::add_mechanism_modes(sink);
+  }
+  write_vtk(folder_ / "modes.nc", folder_ / "vtk");
+  EXPECT_THAT(text_of("vtk/swinging/0000.vtp"), HasSubstr("\n1 2 0\n0 0 0\n"));
+}
+
 TEST_F(WriteVtk, NamesAFolderThatCannotBeMade) {
   std::ofstream(folder_ / "vtk") << "a file";
   try {

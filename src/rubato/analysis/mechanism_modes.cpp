@@ -1,6 +1,7 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
+#include <rubato/analysis/structure_tables.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace rubato::analysis {
 namespace {
@@ -163,6 +165,8 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
         "out, and tell nothing of flutter, which a transient does",
         modes.skew));
   write_modes(name, plan.modes.observed, {{0, modes.found}}, context.sink);
+  write_configuration(name, mechanism.model(), std::span(state.q.data(), static_cast<std::size_t>(state.q.size())),
+                      context.sink);
   if (modes.freedoms == 0)
     report.message = "the joints leave no motion";
   else if (!modes.is_stable)

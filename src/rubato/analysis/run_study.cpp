@@ -229,7 +229,7 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
   RunReport report = input.mechanism ? run_mechanism_analysis(analysis, input, context)
                                      : std::visit(Run{analysis, input, context}, analysis.task);
-  // Shapes are motions about a configuration, which the pictures of mechanisms do not know.
+  // Modes have written the configuration about which they are.
   if (input.mechanism && !std::holds_alternative<model::ModesDescription>(analysis.task))
     write_structure(analysis.name, input.mechanism->model(), context.sink);
   const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();

@@ -4,6 +4,7 @@
 #include <rubato/model/structure.hpp>
 #include <rubato/results/sink.hpp>
 
+#include <span>
 #include <string>
 
 namespace rubato::analysis {
@@ -21,5 +22,11 @@ void write_structure(const std::string& analysis, const model::Structure& struct
 /// `offset_y` [m], in the axes of that node); and lines of the kinds beam, body and link. The main table tells
 /// positions.
 void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink);
+
+/// Likewise beside the modes of a mechanism, whose main table tells shapes: small motions about the configuration with
+/// these numbers, where the positions are, with the rotation vectors of the axes there (`rotation_x` and so on [rad]).
+/// @param numbers  of all nodes, the ground first: a configuration q, of which what follows is not read
+void write_configuration(const std::string& analysis, const model::Mechanism& mechanism,
+                         std::span<const double> numbers, results::Sink& sink);
 
 }  // namespace rubato::analysis

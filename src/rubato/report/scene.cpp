@@ -160,7 +160,9 @@ std::optional<Scene> read_scene(const AnalysisTables& analysis, const SceneExten
   }
   for (const auto& [variable, values] :
        {std::pair{"carrier", &scene.carrier}, std::pair{"offset_x", &scene.offset_x},
-        std::pair{"offset_y", &scene.offset_y}, std::pair{"offset_z", &scene.offset_z}})
+        std::pair{"offset_y", &scene.offset_y}, std::pair{"offset_z", &scene.offset_z},
+        std::pair{"rotation_x", &scene.rotation[0]}, std::pair{"rotation_y", &scene.rotation[1]},
+        std::pair{"rotation_z", &scene.rotation[2]}})
     if (const auto found = find_variable(*nodes, variable)) *values = column(*nodes, *found);
   scene.support = words(*nodes, "support");
   scene.kinds = words(*lines, "kind");

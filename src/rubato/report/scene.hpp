@@ -18,6 +18,9 @@ struct Scene {
   /// Points that a node carries: its number (their own, or -1 where nothing does), and their place in its axes, [p]
   /// each [m]; empty where every node moves by itself.
   std::vector<double> carrier, offset_x, offset_y, offset_z;
+  /// Rotation vectors of the axes of the nodes in the configuration about which shapes are told, [p] each [rad]:
+  /// rotations of nodes are then about these axes. Empty where they are those of the world.
+  std::array<std::vector<double>, 3> rotation;
   std::vector<std::string> kinds;  ///< of the lines, or empty
   bool is_absolute = false;        ///< the values are positions instead of displacements
 

@@ -10,7 +10,7 @@ namespace rubato::report {
 ///
 ///   {"names": [node, ...], "position": [[x, ...], [y, ...], [z, ...]], "support": ["free", ...],
 ///    "lines": [[first node, ...], [second node, ...]], "kinds": ["beam", ...], "is_absolute": bool,
-///    "carrier": [node, ...], "offset": [[x, ...], [y, ...]],
+///    "carrier": [node, ...], "offset": [[x, ...], [y, ...], [z, ...]], "rotation": likewise,
 ///    "places": [[node, ...], [axis, ...]], "rows": [row of the main table, ...], "coordinate": [its time, ...],
 ///    "values": [[a number a place], ...], "imaginary": null or likewise}
 std::string scene_json(const std::optional<Scene>& scene);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -50,12 +51,23 @@ std::string frame_of(const Scene& scene, const std::vector<double>& values, cons
       for (std::size_t axis = 0; axis < 3; ++axis) motion[node][axis] = scene.position[axis][node];
   for (std::size_t place = 0; place < values.size(); ++place)
     motion[scene.place_node[place]][scene.place_axis[place]] = values[place];
+  const auto& axes = scene.rotation;
+  for (std::size_t node = 0; node < axes[0].size(); ++node) {  // a shape is told in the axes of the nodes
+    auto& own = motion[node];
+    const numerics::Vector3 turn = numerics::rotation_of({axes[0][node], axes[1][node], axes[2][node]}) *
+                                   numerics::Vector3(own[3], own[4], own[5]);
+    std::copy(turn.begin(), turn.end(), own.begin() + 3);
+  }
   for (std::size_t node = 0; node < scene.carrier.size(); ++node) {
     if (scene.carrier[node] < 0.0 || scene.carrier[node] == static_cast<double>(node)) continue;
-    const std::array<double, 6>& carrier = motion[static_cast<std::size_t>(scene.carrier[node])];
+    const auto number = static_cast<std::size_t>(scene.carrier[node]);
+    const std::array<double, 6>& carrier = motion[number];
     const numerics::Vector3 turn(carrier[3], carrier[4], carrier[5]);
-    const numerics::Vector3 moved = numerics::rotation_of(turn) *
-                                    numerics::Vector3(scene.offset_x[node], scene.offset_y[node], scene.offset_z[node]);
+    const numerics::Vector3 offset(scene.offset_x[node], scene.offset_y[node], scene.offset_z[node]);
+    const auto& at = scene.position;
+    const numerics::Vector3 arm(at[0][node] - at[0][number], at[1][node] - at[1][number], at[2][node] - at[2][number]);
+    const numerics::Vector3 moved =
+        scene.is_absolute ? numerics::Vector3(numerics::rotation_of(turn) * offset) : turn.cross(arm);
     motion[node] = {carrier[0] + moved[0], carrier[1] + moved[1], carrier[2] + moved[2], turn[0], turn[1], turn[2]};
   }
   std::string points, displacements, rotations;

@@ -32,6 +32,14 @@ SparseMatrix symmetric(const Matrix& matrix) {
   return SparseMatrix((0.5 * (matrix + matrix.transpose())).sparseView(0.0, 0.0));
 }
 
+/// The lowest, and up to the last that grows.
+void keep_lowest(Index count, std::vector<numerics::DampedMode>& modes) {
+  auto kept = std::min(static_cast<std::size_t>(count), modes.size());
+  for (std::size_t i = kept; i < modes.size(); ++i)
+    if (modes[i].damping_ratio < -1e-9) kept = i + 1;
+  modes.resize(kept);
+}
+
 }  // namespace
 
 MechanismModes modes_about(system::MechanismEquations& equations, const system::State& state, Index count) {
@@ -47,7 +55,7 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
   const Matrix mass = reduced(mechanism.mass(), basis), damping = reduced(linear.damping, basis);
   if (result.skew > round_off && result.freedoms <= most_unsymmetric) {
     result.found = numerics::lowest_unsymmetric_modes(tangent, damping, mass, result.freedoms);
-    auto& modes = result.found.modes;
+    const auto& modes = result.found.modes;
     // A motion that nothing resists comes out with the root of round-off where there is damping.
     const double fastest = modes.empty() ? 0.0 : modes.back().angular_frequency;
     const double nothing = damping.isZero(0.0) ? 0.0 : std::sqrt(round_off) * fastest;
@@ -58,7 +66,6 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
       result.flutters = mode.eigenvalue.imag() > 0.0;
     }
     result.is_stable = result.growth == 0.0;
-    if (static_cast<Index>(modes.size()) > count) modes.resize(static_cast<std::size_t>(count));
   } else {
     const SparseMatrix even_mass = symmetric(mass), stiffness = symmetric(tangent);
     // Generalised, so that the signs are those of omega^2; round-off of K makes no motion unstable.
@@ -71,8 +78,11 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
     if (result.is_stable)
       result.found =
           numerics::lowest_damped_modes(stiffness, symmetric(damping), even_mass, std::min(count, result.freedoms));
+    else if (result.freedoms <= most_unsymmetric)  // the only route that knows modes which grow
+      result.found =
+          numerics::lowest_unsymmetric_modes(0.5 * (tangent + tangent.transpose()), damping, mass, 2 * result.freedoms);
   }
-  if (!result.is_stable) result.found = {};
+  keep_lowest(count, result.found.modes);
   for (auto& mode : result.found.modes) mode.shape = (basis * mode.shape).eval();
   return result;
 }

@@ -13,6 +13,9 @@ function magnification(scene, size) {
   return [5, 2, 1].map((digit) => digit * power).find((candidate) => candidate <= wanted) ?? power;
 }
 
+const scene_box = (scene) => bounding_box(scene.names.map((_, node) => scene.position.map((axis) => axis[node])));
+const scene_size = (scene) => scene_box(scene).diagonal;
+
 /** The box of all that will be seen: every node at some of the moments. */
 function seen_box(scene, scale) {
   const nodes = scene.names.map((_, node) => node);
@@ -37,21 +40,37 @@ function between_frames(scene, first, second, share) {
   return values.map((value, place) => (axes[place] >= 3 && jumps.get(nodes[place]) > Math.PI ? (share < 0.5 ? first : second)[place] : value));
 }
 
+const usual_share = 0.1;  // of a structure's size: the largest displacement of a shape
+
+function amplitude_slider(choose) {
+  const text = (share) => `${Math.round(100 * share)} % of the size`;
+  const slider = element("input", {type: "range", class: "amplitude", min: "0.01", max: "0.4", step: "0.01",
+                                   value: String(usual_share), "aria-label": "Amplitude"});
+  const told = element("output", {}, text(usual_share));
+  slider.addEventListener("input", () => {
+    told.textContent = text(Number(slider.value));
+    choose(Number(slider.value));
+  });
+  return element("label", {class: "choice"}, "Amplitude ", slider, " ", told);
+}
+
 /**
  * A player of a scene.
  *
  * moments: {count, label(at), values(at)}: what is seen at a place in [0, count - 1], which need not be whole
  * seconds: how long the whole takes at the speed that is chosen first
  * choosers: as in make_figure, besides those of the player
+ * shape: of motions without a size of their own, {box, size, scale()}: how large to draw what is chosen so that its largest
+ * displacement is the size of the structure; a slider says which part of that is seen
  */
-function make_player({scene, moments, caption, seconds, is_periodic = false, choosers = []}) {
-  const size = bounding_box(scene.names.map((_, node) => scene.position.map((axis) => axis[node]))).diagonal;
-  const usual = magnification(scene, size);
-  const scales = scene.is_absolute ? [1] : [...new Set([usual, 1, usual / 2, 2 * usual, 5 * usual])];
-  const view = make_view(scene, seen_box(scene, usual));
+function make_player({scene, moments, caption, seconds, is_periodic = false, choosers = [], shape = null}) {
+  const usual = shape ? 1 : magnification(scene, scene_size(scene));
+  const scales = scene.is_absolute || shape ? [1] : [...new Set([usual, 1, usual / 2, 2 * usual, 5 * usual])];
+  const view = make_view(scene, shape ? shape.box : seen_box(scene, usual));
   const height = Math.round(Math.min(460, Math.max(200, 80 + 700 * view.aspect)));
   const canvas = element("canvas", {class: "scene", role: "img", "aria-label": caption, style: `height:${height}px`, tabindex: "0"});
-  const state = {at: 0, scale: usual, speed: 1, is_playing: false, traced: new Set(), last: 0};
+  const state = {at: 0, scale: usual, speed: 1, is_playing: false, traced: new Set(), last: 0, share: usual_share};
+  const scale = () => (shape ? state.share * shape.scale() : state.scale);
 
   const time = element("output", {class: "moment"});
   const scrub = element("input", {type: "range", min: "0", max: String(Math.max(1, moments.count - 1)), step: "any", value: "0", "aria-label": "Moment"});
@@ -70,6 +89,10 @@ function make_player({scene, moments, caption, seconds, is_periodic = false, cho
     state.scale = scales[index];
     paint();
   }));
+  const amplitude = shape ? amplitude_slider((share) => {
+    state.share = share;
+    paint();
+  }) : null;
   const speeds = [1, 0.5, 0.2, 2, 5];
   lists.push(choice_list({label: "Speed", options: speeds.map((speed) => (speed === 1 ? "normal" : `× ${speed}`))}, (index) => {
     state.speed = speeds[index];
@@ -82,7 +105,7 @@ function make_player({scene, moments, caption, seconds, is_periodic = false, cho
 
   function trace_of(node) {
     const points = [];
-    for (let frame = 0; frame <= state.at; ++frame) points.push(node_position(scene, node_motion(scene, moments.values(frame)), state.scale, node));
+    for (let frame = 0; frame <= state.at; ++frame) points.push(node_position(scene, node_motion(scene, moments.values(frame)), scale(), node));
     return points;
   }
 
@@ -92,8 +115,8 @@ function make_player({scene, moments, caption, seconds, is_periodic = false, cho
     canvas.height = Math.round(ratio * height);
     const pen = canvas.getContext("2d");
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    view.fit(width, height);
-    draw_scene(pen, scene, view, {motion: node_motion(scene, moments.values(state.at)), scale: state.scale, width, height,
+    view.fit(width, height, shape ? Math.max(0, state.share - usual_share) * shape.size : 0);
+    draw_scene(pen, scene, view, {motion: node_motion(scene, moments.values(state.at)), scale: scale(), width, height,
                                   traces: [...state.traced].map(trace_of)});
     scrub.value = String(state.at);
     time.textContent = moments.label(state.at);
@@ -140,7 +163,7 @@ function make_player({scene, moments, caption, seconds, is_periodic = false, cho
   new ResizeObserver(() => { if (figure.is_drawn) paint(); }).observe(canvas);
 
   const moving = moments.count > 1 ? [play, scrub, time] : [];
-  const tools = element("div", {class: "tools"}, ...moving, ...lists, ...trace_list);
+  const tools = element("div", {class: "tools"}, ...moving, ...lists, amplitude, ...trace_list);
   const save = (name) => element("a", {href: canvas.toDataURL("image/png"), download: `${name}.png`}).click();
   const figure = frame_figure({drawing: canvas, caption, tools, file_kind: "PNG", save, render: paint, height});
   return figure.node;
@@ -149,7 +172,8 @@ function make_player({scene, moments, caption, seconds, is_periodic = false, cho
 function scene_caption(scene, what) {
   const many = scene.names.length;
   const size = `${count_text(many)} node${many === 1 ? "" : "s"}, ${count_text(scene.lines[0].length)} line${scene.lines[0].length === 1 ? "" : "s"}`;
-  const rest = scene.is_absolute ? "" : " Grey: where it stands without load.";
+  const where = scene.rotation[0].length > 0 ? "the configuration about which it swings" : "where it stands without load";
+  const rest = scene.is_absolute ? "" : ` Grey: ${where}.`;
   return `${what} (${size}).${rest}${is_in_space(scene) ? " Drag to turn it." : ""}`;
 }
 
@@ -180,13 +204,41 @@ function shape_figure(scene) {
   return make_player({scene, moments, seconds: 1, caption: scene_caption(scene, "The structure in equilibrium")});
 }
 
+/**
+ * The largest displacement of a shape over a period, of any node [1/sqrt(kg)]. Where a body turns that carries little around
+ * it, so much that at the usual share it turns by half a radian.
+ */
+function largest_motion(scene, size, frame) {
+  const parts = [scene.values, ...(scene.imaginary ? [scene.imaginary] : [])].map((all) => node_motion(scene, all[frame]));
+  const carriers = new Set(scene.carrier.filter((carrier, node) => carrier !== node));
+  const length = (node, first) => Math.hypot(...parts.flatMap((motion) => [...motion.subarray(6 * node + first, 6 * node + first + 3)]));
+  const reach = (node) => Math.max(length(node, 0), carriers.has(node) ? 2 * usual_share * size * length(node, 3) : 0);
+  return scene.names.reduce((most, _, node) => Math.max(most, reach(node)), 0);
+}
+
+/** What a mode is called in a list: its frequency and damping, or how it leaves or comes back. */
+function mode_text(table, row) {
+  const cell = (name) => {
+    const variable = variable_of(table, name);
+    return variable ? table.overview[variable.index][0][row] : null;
+  };
+  const short = (number) => String(Number(number.toPrecision(4)));
+  const [hertz, radians, ratio, growth] = ["frequency", "angular_frequency", "damping_ratio", "eigenvalue_real"].map(cell);
+  const swings = Math.abs(ratio) < 1 && radians > 0;
+  const at = `${short(hertz)} Hz (${short(radians)} rad/s)`;
+  if (ratio < -1e-9) return swings ? `${at}, grows as exp(${short(growth)} t)` : `leaves as exp(${short(growth)} t)`;
+  if (!(radians > 0)) return "0 Hz, nothing brings it back";
+  return `${at}, ${swings ? "" : "overdamped, "}damping ratio ${Number(ratio.toPrecision(3))}`;
+}
+
 /** Modes: each swings through a period, both parts of a complex shape in their phase. */
 function mode_player(scene, table) {
-  const limit = variable_of(table, "limit"), mode = variable_of(table, "mode"), frequency = variable_of(table, "frequency");
+  const limit = variable_of(table, "limit"), mode = variable_of(table, "mode");
   const cell = (variable, row) => table.overview[variable.index][0][row];
   const several = new Set(scene.rows.map((row) => cell(limit, row))).size > 1;
   const options = scene.rows.map((row) => `${several ? `${phrase(limit.categories[cell(limit, row)])}, mode` : "Mode"} ${cell(mode, row)}: ` +
-    `${Number(cell(frequency, row).toPrecision(4))} Hz`);
+    mode_text(table, row));
+  const size = scene_size(scene), box = scene_box(scene), largest = scene.rows.map((_, frame) => largest_motion(scene, size, frame));
   let chosen = 0;
   const turn = (at) => 2 * Math.PI * at / 60;
   const moments = {
@@ -197,9 +249,17 @@ function mode_player(scene, table) {
     },
     label: (at) => `phase ${Math.round(6 * at)}°`,
   };
+  const more = usual_share * size, flat = is_in_space(scene) ? 3 : 2;
+  const shape = {
+    size, scale: () => (largest[chosen] > 0 ? size / largest[chosen] : 0),
+    box: {low: box.low.map((x, i) => x - (i < flat ? more : 0)), high: box.high.map((x, i) => x + (i < flat ? more : 0)),
+          radius: box.radius + more},
+  };
   const choosers = [{label: "Mode", options, choose: (index) => { chosen = index; }}];
-  return make_player({scene, moments, seconds: 2, is_periodic: true, choosers,
-                      caption: scene_caption(scene, "A mode of the structure")});
+  const rest = table.rows > scene.rows.length ? ` The first ${scene.rows.length} of ${count_text(table.rows)} are drawn.` : "";
+  const caption = scene_caption(scene, scene.rotation[0].length > 0 ? "A mode of the mechanism" : "A mode of the structure") +
+    ` The size of a mode is free: it is drawn as a small motion.${rest}`;
+  return make_player({scene, moments, seconds: 2, is_periodic: true, choosers, shape, caption});
 }
 
 /** The section that shows the structure, where the results tell of one. */

@@ -12,7 +12,13 @@ function turned_by(turn, vector) {
           cos * c + sin * (x * b - y * a) + along * z];
 }
 
-/** Motion of every node, six numbers each: displacements (or positions) along x, y, z and rotations about them. */
+const crossed = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
+
+/**
+ * Motion of every node, six numbers each: displacements (or positions) along x, y, z and rotations about them. Shapes are
+ * small motions: rotations are vectors, told in the axes of the nodes where those are turned, and what a node carries moves
+ * by their cross product with its arm, so that joints stay closed however large a shape is drawn.
+ */
 function node_motion(scene, values) {
   const motion = new Float64Array(6 * scene.names.length);
   if (scene.is_absolute) {
@@ -20,10 +26,17 @@ function node_motion(scene, values) {
   }
   const [nodes, axes] = scene.places;
   values.forEach((value, place) => { motion[6 * nodes[place] + axes[place]] = value ?? 0; });
+  if (scene.rotation[0].length > 0) {
+    scene.names.forEach((_, node) => {
+      const turn = turned_by(scene.rotation.map((axis) => axis[node] ?? 0), motion.subarray(6 * node + 3, 6 * node + 6));
+      motion.set(turn, 6 * node + 3);
+    });
+  }
   scene.carrier.forEach((carrier, node) => {  // points that move with a node
     if (carrier === node || carrier < 0) return;
     const turn = [3, 4, 5].map((i) => motion[6 * carrier + i]);
-    const moved = turned_by(turn, scene.offset.map((axis) => axis[node] ?? 0));
+    const moved = scene.is_absolute ? turned_by(turn, scene.offset.map((axis) => axis[node] ?? 0))
+                                    : crossed(turn, scene.position.map((axis) => axis[node] - axis[carrier]));
     moved.forEach((x, i) => { motion[6 * node + i] = motion[6 * carrier + i] + x; });
   });
   return motion;
@@ -37,19 +50,19 @@ function node_position(scene, motion, scale, node) {
 
 /**
  * Points along a line in the deformed structure. Displacements go along it with the rotations of its ends as slopes, as
- * in a beam; without rotations, and where positions are absolute, it is straight.
+ * in a beam; without rotations, where positions are absolute, and of bodies and links it is straight.
  */
 function line_points(scene, motion, scale, line) {
   const [a, b] = [scene.lines[0][line], scene.lines[1][line]];
   const ends = [node_position(scene, motion, scale, a), node_position(scene, motion, scale, b)];
   const turns = (node) => [3, 4, 5].map((i) => motion[6 * node + i]);
   const [ta, tb] = [turns(a), turns(b)];
-  if (scene.is_absolute || ![...ta, ...tb].some((turn) => turn !== 0)) return ends;
+  const is_straight = scene.is_absolute || (scene.kinds.length > 0 && scene.kinds[line] !== "beam");
+  if (is_straight || ![...ta, ...tb].some((turn) => turn !== 0)) return ends;
   const axis = [0, 1, 2].map((i) => scene.position[i][b] - scene.position[i][a]);
-  const cross = ([x, y, z]) => [y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]];
   const squared = axis.reduce((sum, x) => sum + x * x, 0);
   const stretch = [0, 1, 2].reduce((sum, i) => sum + (motion[6 * b + i] - motion[6 * a + i]) * axis[i], 0) / squared;
-  const [sa, sb] = [cross(ta), cross(tb)].map((slope) => slope.map((s, i) => s + stretch * axis[i]));
+  const [sa, sb] = [crossed(ta, axis), crossed(tb, axis)].map((slope) => slope.map((s, i) => s + stretch * axis[i]));
   const pieces = 8, points = [];
   for (let piece = 0; piece <= pieces; ++piece) {
     const x = piece / pieces, x2 = x * x, x3 = x2 * x;
@@ -60,7 +73,7 @@ function line_points(scene, motion, scale, line) {
   return points;
 }
 
-/** Smallest and largest of each coordinate over points. */
+/** Smallest and largest of each coordinate over points, and how far from the middle they reach. */
 function bounding_box(points) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const point of points) {
@@ -69,7 +82,9 @@ function bounding_box(points) {
       high[i] = Math.max(high[i], point[i]);
     }
   }
-  return {low, high, diagonal: Math.hypot(...high.map((x, i) => x - low[i]))};
+  const centre = low.map((x, i) => 0.5 * (x + high[i]));
+  const radius = points.reduce((most, point) => Math.max(most, Math.hypot(...point.map((x, i) => x - centre[i]))), 0);
+  return {low, high, radius, diagonal: Math.hypot(...high.map((x, i) => x - low[i]))};
 }
 
 const is_in_space = (scene) => scene.position[2].some((z) => z !== 0) || scene.places[1].includes(2);
@@ -84,12 +99,12 @@ function make_view(scene, box) {
     const [c, s] = [Math.cos(view.yaw), Math.sin(view.yaw)], depth = c * y - s * x;
     return [c * x + s * y, Math.cos(view.pitch) * z + Math.sin(view.pitch) * depth];
   };
-  const half = view.in_space ? [0.5 * box.diagonal, 0.5 * box.diagonal] : [0, 1].map((i) => 0.5 * (box.high[i] - box.low[i]));
+  const half = view.in_space ? [box.radius, box.radius] : [0, 1].map((i) => 0.5 * (box.high[i] - box.low[i]));
   view.aspect = Math.max(half[1], 0.15 * half[0]) / Math.max(half[0], 0.15 * half[1], 1e-300);
-  /** Fits the box into a canvas of so many pixels. */
-  view.fit = (width, height) => {
-    const margin = 34;
-    view.pixels = Math.min((width - 2 * margin) / Math.max(2 * half[0], 1e-300), (height - 2 * margin) / Math.max(2 * half[1], 1e-300));
+  /** Fits the box, with so much more to each side [m], into a canvas of so many pixels. */
+  view.fit = (width, height, more = 0) => {
+    const margin = 34, [wide, high] = half.map((length) => Math.max(2 * (length + more), 1e-300));
+    view.pixels = Math.min((width - 2 * margin) / wide, (height - 2 * margin) / high);
     view.origin = [0.5 * width, 0.5 * height];
   };
   view.project = (point) => {
