@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/friction_phases.hpp>
+#include <rubato/integrate/mechanism/held_frictions.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <algorithm>
@@ -8,6 +9,8 @@ namespace rubato::integrate {
 namespace {
 
 using model::friction_free;
+using model::friction_pulls_down;
+using model::friction_pulls_up;
 using model::friction_slides_down;
 using model::friction_slides_up;
 using model::friction_sticks;
@@ -36,9 +39,9 @@ bool is_locked(const model::Mechanism& model, const system::State& state, std::s
   return false;
 }
 
-}  // namespace
-
-bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates) {
+/// What may stick, by the candidates; the phases and accelerations of all become those of Coulomb's law.
+bool decide(system::MechanismEquations& equations, system::State& state, std::vector<char>& candidates,
+            const std::vector<char>& at_limit) {
   const auto& mechanism = equations.mechanism();
   const auto& frictions = mechanism.model().frictions;
   std::vector<char> is_open(frictions.size(), 0);  // may stick or slide as it turns out
@@ -61,12 +64,12 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
   for (std::size_t change = 0; change < most_changes; ++change) {
     equations.go_to(state, model::Side::right);
     std::size_t worst = frictions.size();
-    double largest = 0.0;
+    double largest = -HUGE_VAL;
     for (std::size_t i = 0; i < frictions.size(); ++i) {
       if (state.rubbing[i] != friction_sticks) continue;
       const double held = std::abs(equations.friction_force(i, state.multiplier));
       const double excess = held - equations.friction_limit(i, state.multiplier);
-      const double round_off = 1e-9 * held;
+      const double round_off = (at_limit[i] ? -1e-9 : 1e-9) * held;
       if (!(excess <= round_off) && !(excess <= largest)) {
         largest = excess;
         worst = i;
@@ -91,8 +94,32 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
     }
     if (!holds_another) break;
   }
+  return true;
+}
+
+}  // namespace
+
+bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
+                     std::vector<char> at_limit) {
+  const std::size_t count = candidates.size();
+  at_limit.resize(count, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    candidates[i] = candidates[i] || state.rubbing[i] == friction_pulls_up || state.rubbing[i] == friction_pulls_down;
+  for (std::size_t round = 0; round <= count; ++round) {
+    if (!decide(equations, state, candidates, at_limit)) return false;
+    const std::vector<char> is_held = held_frictions(equations, state);
+    if (is_held.size() != count) return false;
+    bool is_news = false;  // what slid until now stands, since another holds it
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_held[i]) continue;
+      is_news = is_news || !candidates[i];
+      candidates[i] = 1;
+      state.rubbing[i] = state.rubbing[i] == friction_slides_up ? friction_pulls_up : friction_pulls_down;
+    }
+    if (!is_news) break;
+  }
   bool holds_new = false;
-  for (std::size_t i = 0; i < frictions.size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     holds_new = holds_new || (candidates[i] && state.rubbing[i] == friction_sticks);
   if (!holds_new) return true;
   const ConsistentStart at_rest = make_consistent(equations, state, model::Side::right);  // rates left are round-off

@@ -12,11 +12,15 @@ namespace rubato::integrate {
 /// A candidate, whose coordinate is at rest, sticks if that takes no more than mu N; otherwise it goes the way in which
 /// it is pulled. Of several the one that exceeds its limit most is let go first, and then the others are looked at
 /// again; one that would then move against its way is held. Joints that stick already are looked at like candidates;
-/// those that slide go on. One that a rigid lock of its own joint holds is left out, and is a candidate when that lets
-/// go.
+/// those that slide go on. What goes, but cannot since others hold it (two dry hinges on one axis, of which one alone
+/// is not strong enough), pulls; what pulls already is a candidate again. One that a rigid lock of its own joint holds
+/// is left out, and is a candidate when that lets go.
 /// @param candidates  of all joints with friction
+/// @param at_limit    those that sticking took to their limit just now, or that pulled: they stick only if they are
+///                    clearly below it; empty: none
 /// @return false where no acceleration is found
-bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates);
+bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
+                     std::vector<char> at_limit = {});
 
 /// The same where velocities are new (at the start, after an impact): joints at rest are candidates, the others slide
 /// as they move. Impulses are taken without friction: one of a preload is none in no time, one of a reaction is left

@@ -24,6 +24,8 @@ double cubic(double x, double y0, double slope0, double y1, double slope1) {
   return rest * rest * ((1.0 + 2.0 * x) * y0 + x * slope0) + x * x * ((1.0 + 2.0 * rest) * y1 - rest * slope1);
 }
 
+bool pulls(int phase) { return phase == model::friction_pulls_up || phase == model::friction_pulls_down; }
+
 }  // namespace
 
 MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double resolution)
@@ -119,9 +121,8 @@ bool MechanismTimeline::restart(system::State& state) {
 
 void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
   for (std::size_t i = 0; i < old.size(); ++i) {
-    const bool sticks = state.rubbing[i] == model::friction_sticks;
-    if ((old[i] == model::friction_sticks) != sticks)
-      events_.push_back({state.t, -1, sticks, 0.0, static_cast<int>(i)});
+    const bool rests = model::is_at_rest(state.rubbing[i]);
+    if (model::is_at_rest(old[i]) != rests) events_.push_back({state.t, -1, rests, 0.0, static_cast<int>(i)});
   }
 }
 
@@ -142,14 +143,19 @@ void MechanismTimeline::count_transition(std::size_t guard, const system::State&
 MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
   Rubbing result;
   result.candidates.assign(state.rubbing.size(), 0);
+  result.at_limit = result.candidates;
   const std::vector<int> old = state.rubbing;
+  const bool has_pulling = std::any_of(old.begin(), old.end(), pulls);
   for (std::size_t i = 0; i < old.size(); ++i) {
-    if (old[i] == model::friction_free) continue;
+    if (old[i] == model::friction_free || pulls(old[i])) continue;
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     result.has_changed = true;
     count_transition(row_.size() + i, state);
     if (old[i] != model::friction_sticks) {
+      result.candidates[i] = 1;
+    } else if (has_pulling) {  // it may have held against what pulls, which can give way first
+      for (std::size_t k = 0; k < old.size(); ++k) result.at_limit[k] = result.at_limit[k] || k == i || pulls(old[k]);
       result.candidates[i] = 1;
     } else {
       const double force = balanced_friction(i, state);
@@ -204,8 +210,9 @@ bool MechanismTimeline::release(system::State& state) {
 
 bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state) const {
   if (lock < row_.size() && friction_of_[lock] >= 0 && state.phase[lock] == model::lock_open &&
-      state.rubbing[static_cast<std::size_t>(friction_of_[lock])] == model::friction_sticks)
+      model::is_at_rest(state.rubbing[static_cast<std::size_t>(friction_of_[lock])]))
     return false;  // what sticks at its stop lies beyond it by round-off, and comes no nearer
+  if (lock >= row_.size() && pulls(state.rubbing[lock - row_.size()])) return false;
   return lock >= row_.size() || !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
 }
 
@@ -287,8 +294,8 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     if (!project(state, events_.back().energy_lost)) return Passage::fails;
     has_impact = true;
   }
-  const bool is_settled =
-      has_impact ? settle_new_velocities(equations_, state) : settle_friction(equations_, state, rubbing.candidates);
+  const bool is_settled = has_impact ? settle_new_velocities(equations_, state)
+                                     : settle_friction(equations_, state, rubbing.candidates, rubbing.at_limit);
   note_friction(old, state);
   if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;
   shift_acceleration(equations_, state, shift);

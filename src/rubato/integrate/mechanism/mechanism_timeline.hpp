@@ -27,6 +27,7 @@ struct LockEvent {
 ///   latched                   nothing any more
 ///   slides                    s' in the direction in which it slides
 ///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
+///   pulls while others hold   nothing: they are watched
 ///
 /// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and
 /// the multipliers of equilibrium. A drive whose prescribed velocity jumps does the same: it gives the impulse, whose
@@ -54,7 +55,7 @@ class MechanismTimeline final : public Timeline {
  private:
   struct Rubbing {
     bool has_changed = false;
-    std::vector<char> candidates;
+    std::vector<char> candidates, at_limit;
   };
   /// Where the mechanism is, for its joints, with padded_ and padded_acceleration_ set to the state.
   model::Motion motion_of(const system::State& state);

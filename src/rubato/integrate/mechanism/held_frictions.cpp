@@ -1,0 +1,94 @@
+#include <rubato/integrate/mechanism/held_frictions.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+/// ds/dq [n].
+Vector slope_of(const model::FreeCoordinate& s, const system::State& state) {
+  const std::vector<Index> places = s.places();
+  std::vector<double> slope(places.size());
+  s.slope(state.q.data(), slope.data());
+  Vector all = Vector::Zero(state.v.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i] != ground) all[places[i]] += slope[i];
+  return all;
+}
+
+struct Mobility {
+  double mobility = 0.0;  ///< w
+  bool is_driven = false;
+};
+
+/// Of the frictions asked for, with the phases of the state; false where the matrix cannot be factorised.
+bool find_mobilities(system::MechanismEquations& equations, const system::State& state,
+                     const std::vector<std::size_t>& frictions, std::vector<Mobility>& found) {
+  constexpr double driven = 1e-8;  // of a radian or metre for one of the drive
+  const auto& mechanism = equations.mechanism();
+  const auto& model = mechanism.model();
+  Vector motion(mechanism.size()), impulse(mechanism.constraint_count());
+  equations.go_to(state, model::Side::right);
+  equations.linearise({}, state.multiplier, motion, impulse);
+  if (!equations.factorise()) return false;
+  Vector by_time(impulse.size()), rate(impulse.size()), correction(motion.size());
+  equations.constraint_rate(Vector::Zero(motion.size()), by_time);
+  found.clear();
+  for (const std::size_t friction : frictions) {
+    const Vector slope = slope_of(model.frictions[friction].s, state);
+    motion = slope;
+    impulse.setZero();
+    equations.solve(motion, impulse);
+    for (int round = 0; round < 2; ++round) {  // each removes what the share E of the multipliers leaves
+      equations.constraint_rate(motion, rate);
+      rate = by_time - rate;
+      correction.setZero();
+      equations.solve(correction, rate);
+      motion += correction;
+      impulse += rate;
+    }
+    Mobility of{slope.dot(motion), false};
+    for (const auto& drive : model.drives)  // by reciprocity: what the drive would move of s
+      of.is_driven = of.is_driven || !(std::abs(impulse[mechanism.first_row(drive.joint)]) <= driven);
+    found.push_back(of);
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state) {
+  // Axes that lie in one to four digits count as one: rows at an angle leave its square.
+  constexpr double same_axis = 1e-8, round_off = 1e-12;
+  const auto& model = equations.mechanism().model();
+  std::vector<char> is_held(model.frictions.size(), 0);
+  std::vector<std::size_t> sliding;
+  system::State open = state;
+  bool holds = false;
+  for (std::size_t i = 0; i < is_held.size(); ++i) {
+    if (model::sliding_direction(state.rubbing[i]) != 0.0) sliding.push_back(i);
+    if (state.rubbing[i] != model::friction_sticks) continue;
+    holds = true;
+    open.rubbing[i] = model::friction_free;
+  }
+  for (std::size_t lock = 0; lock < model.locks.size(); ++lock) {
+    if (state.phase[lock] != model::lock_engaged || !model.locks[lock].is_rigid()) continue;
+    holds = true;
+    open.phase[lock] = model::lock_open;
+  }
+  if (!holds || sliding.empty()) return is_held;
+  std::vector<Mobility> now, without;
+  if (!find_mobilities(equations, state, sliding, now) || !find_mobilities(equations, open, sliding, without))
+    return {};
+  const Vector masses = equations.mechanism().mass().diagonal();
+  for (std::size_t i = 0; i < sliding.size(); ++i) {
+    const Vector slope = slope_of(model.frictions[sliding[i]].s, state);
+    const double alone = slope.cwiseAbs2().cwiseQuotient(masses).sum();
+    const double least = std::max(same_axis * without[i].mobility, round_off * alone);
+    is_held[sliding[i]] = !now[i].is_driven && now[i].mobility <= least;
+  }
+  return is_held;
+}
+
+}  // namespace rubato::integrate
