@@ -1,5 +1,6 @@
 #include <rubato/model/build_sections.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/build_structure_nodes.hpp>
 #include <rubato/model/by_name.hpp>
 
 #include <fmt/format.h>
@@ -9,8 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
-#include <unordered_map>
 #include <utility>
 
 namespace rubato::model {
@@ -25,90 +24,24 @@ constexpr double parallel = 1e-8;
 class StructureBuilder {
  public:
   StructureBuilder(const StructureDescription& description, const Parameters& parameters)
-      : description_(description), parameters_(parameters) {}
+      : description_(description), parameters_(parameters), nodes_(description, parameters, built_.structure) {}
 
   BuiltStructure build(Index offset) {
-    take_nodes();
+    nodes_.take_given();
     materials_ = build_materials(description_.materials, parameters_);
     sections_ = build_sections(description_.sections, in_plane(), parameters_);
     for (const BeamDescription& beam : description_.beams) take_beam(beam);
     for (const TrussDescription& truss : description_.trusses) take_truss(truss);
-    for (const PointMassDescription& mass : description_.masses) take_mass(mass);
-    for (const SupportDescription& support : description_.supports) take_support(support);
-    number_coordinates(offset);
+    nodes_.take_masses_and_supports();
+    nodes_.number(offset, built_);
     return std::move(built_);
   }
 
  private:
-  struct NodeState {
-    std::array<bool, 6> exists{}, is_fixed{};
-    std::array<double, 6> mass{}, velocity{};
-    Location where;
-  };
-
   double number(const Quantity& quantity, const std::string& what) const {
     return evaluate(quantity, parameters_, what);
   }
-  double positive(const Quantity& quantity, const std::string& what) const {
-    return model::positive(quantity, parameters_, what);
-  }
   bool in_plane() const { return built_.structure.dimension == 2; }
-
-  void add_node(const std::string& name, const Location& where, const Axis& position) {
-    refuse_unfit_name(name, where);
-    nodes_.add(name, where, static_cast<Index>(states_.size()));
-    built_.structure.names.push_back(name);
-    built_.structure.positions.push_back(position);
-    states_.emplace_back();
-    states_.back().where = where;
-  }
-
-  /// Velocities of a node at the start, by the axes that it has.
-  void take_velocity(const NodeDescription& node, NodeState& state) const {
-    const auto take = [&](const std::vector<Quantity>& values, const Location& where, const char* key,
-                          std::span<const std::size_t> axes) {
-      if (values.empty()) return;
-      const std::string what = fmt::format("node \"{}\": {}", node.name, key);
-      if (values.size() != axes.size())
-        throw InvalidInput(
-            where, fmt::format("{} takes {} number{} {}, got {}", what,
-                               axes.size() == 1   ? "one"
-                               : axes.size() == 2 ? "two"
-                                                  : "three",
-                               axes.size() == 1 ? "" : "s", in_plane() ? "in the plane" : "in space", values.size()));
-      for (std::size_t i = 0; i < axes.size(); ++i) state.velocity[axes[i]] = number(values[i], what);
-    };
-    static constexpr std::array<std::size_t, 6> axes{0, 1, 2, 3, 4, 5};
-    const std::size_t translations = in_plane() ? 2 : 3;
-    take(node.velocity, node.velocity_where, "velocity", std::span(axes).first(translations));
-    take(node.angular_velocity, node.angular_velocity_where, "angular_velocity",
-         in_plane() ? std::span(axes).last(1) : std::span(axes).last(3));
-  }
-
-  void take_nodes() {
-    built_.structure.dimension = description_.nodes.front().position.size() == 3 ? 3 : 2;
-    for (const NodeDescription& node : description_.nodes) {
-      const std::size_t given = node.position.size();
-      if (given != 2 && given != 3)
-        throw InvalidInput(node.where, fmt::format("node \"{}\": position takes two numbers in the plane or three in "
-                                                   "space, got {}",
-                                                   node.name, given));
-      if (static_cast<int>(given) != built_.structure.dimension)
-        throw InvalidInput(node.where,
-                           fmt::format("node \"{}\" has {} numbers for its position, and node \"{}\" has {}: a model "
-                                       "lies in the plane or in space",
-                                       node.name, given, description_.nodes.front().name, built_.structure.dimension));
-      Axis position = Axis::Zero();
-      for (std::size_t i = 0; i < given; ++i)
-        position[static_cast<Index>(i)] = number(node.position[i], fmt::format("node \"{}\": position", node.name));
-      if (node.name == "ground")
-        throw InvalidInput(node.where,
-                           "a node cannot be called \"ground\", which is the name of what does not move; "
-                           "give it another name, and hold it by a [[support]]");
-      add_node(node.name, node.where, position);
-      take_velocity(node, states_.back());
-    }
-  }
 
   static std::string part_of(const LineDescription& line, const char* kind) {
     return line.name.empty() ? fmt::format("the {} from \"{}\" to \"{}\"", kind, line.nodes[0], line.nodes[1])
@@ -307,11 +240,7 @@ class StructureBuilder {
         throw InvalidInput(beam.where, fmt::format("{} makes a node \"{}\" within it, which there is already; give the "
                                                    "beam another name",
                                                    part, between));
-      add_node(between, beam.where, (1.0 - share) * from + share * to);
-      element.second = static_cast<Index>(states_.size()) - 1;
-      for (std::size_t axis = 0; axis < 6; ++axis)
-        states_.back().velocity[axis] = (1.0 - share) * states_[static_cast<std::size_t>(first)].velocity[axis] +
-                                        share * states_[static_cast<std::size_t>(last)].velocity[axis];
+      element.second = nodes_.add_between(between, beam.where, first, last, share);
       element.properties = properties_at(i == 1, false);
       add_element(element, true);
       element.first = element.second;
@@ -325,14 +254,7 @@ class StructureBuilder {
     built_.structure.elements.push_back(element);
     if (built_.structure.properties[static_cast<std::size_t>(element.properties)].released != 0)
       return take_inertias_of(element);
-    for (const Index node : {element.first, element.second}) {
-      auto& exists = states_[static_cast<std::size_t>(node)].exists;
-      exists[0] = exists[1] = true;
-      exists[2] = exists[2] || !in_plane();
-      if (!is_beam) continue;
-      exists[5] = true;
-      exists[3] = exists[4] = !in_plane();
-    }
+    for (const Index node : {element.first, element.second}) nodes_.give_axes(node, is_beam);
   }
 
   /// A degree of freedom that all elements of a node release has no inertia, and does not exist.
@@ -354,8 +276,7 @@ class StructureBuilder {
     for (int i = 0; i < equations.size; ++i) {
       const std::size_t axis = equations.axis[static_cast<std::size_t>(i)];
       const Index node = i < equations.size / 2 ? element.first : element.second;
-      if (equations.mass(i, i) > none * largest[is_rotation(axis)])
-        states_[static_cast<std::size_t>(node)].exists[axis] = true;
+      if (equations.mass(i, i) > none * largest[is_rotation(axis)]) nodes_.give_axis(node, axis);
     }
   }
 
@@ -371,118 +292,18 @@ class StructureBuilder {
     add_element({ends[0], ends[1], add_properties(p), Axis::Zero()}, false);
   }
 
-  void take_mass(const PointMassDescription& mass) {
-    const std::string part = fmt::format("the mass on node \"{}\"", mass.node);
-    const std::size_t node = nodes_.place(mass.node, mass.node_where, "a mass is on");
-    NodeState& state = states_[node];
-    if (!mass.mass && mass.inertia.empty())
-      throw InvalidInput(mass.where, part + " needs \"mass\" [kg], \"inertia\" [kg m2] or both");
-    if (mass.mass) {
-      const double value = positive(*mass.mass, part + ": mass");
-      for (std::size_t axis = 0; axis < static_cast<std::size_t>(built_.structure.dimension); ++axis) {
-        state.mass[axis] += value;
-        state.exists[axis] = true;
-      }
-    }
-    if (mass.inertia.empty()) return;
-    const std::size_t wanted = in_plane() ? 1 : 3;
-    if (mass.inertia.size() != wanted)
-      throw InvalidInput(mass.where, fmt::format("{}: inertia takes {}, got {}", part,
-                                                 in_plane() ? "one number in the plane, about z"
-                                                            : "three numbers in space, about x, y and z",
-                                                 mass.inertia.size()));
-    for (std::size_t i = 0; i < wanted; ++i) {
-      const std::size_t axis = in_plane() ? 5 : 3 + i;
-      state.mass[axis] += positive(mass.inertia[i], part + ": inertia");
-      state.exists[axis] = true;
-    }
-  }
-
-  void take_support(const SupportDescription& support) {
-    const std::size_t node = nodes_.place(support.node, support.node_where, "a support is at");
-    if (support.fix.empty())
-      throw InvalidInput(support.where, fmt::format("the support at node \"{}\" fixes nothing", support.node));
-    for (std::size_t i = 0; i < support.fix.size(); ++i) {
-      const auto axis = static_cast<std::size_t>(std::find(axis_names.begin(), axis_names.end(), support.fix[i]) -
-                                                 axis_names.begin());
-      const Location& where = i < support.fix_where.size() ? support.fix_where[i] : support.where;
-      if (axis == axis_names.size() || (in_plane() && axis >= 2 && axis != 5))
-        throw InvalidInput(
-            where, fmt::format("the support at node \"{}\" fixes \"{}\"; a node {}", support.node, support.fix[i],
-                               in_plane() ? "in the plane has x, y, rz" : "in space has x, y, z, rx, ry, rz"));
-      if (states_[node].is_fixed[axis])
-        throw InvalidInput(where, fmt::format("node \"{}\" is fixed in {} twice", support.node, support.fix[i]));
-      states_[node].is_fixed[axis] = true;
-    }
-  }
-
-  /// A velocity along what a support holds, or of a rotation that nothing gives an inertia.
-  void refuse_lost_velocity(std::size_t node) const {
-    if (node >= description_.nodes.size()) return;  // within a beam
-    const NodeState& state = states_[node];
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (state.velocity[axis] == 0.0 || (state.exists[axis] && !state.is_fixed[axis])) continue;
-      const NodeDescription& given = description_.nodes[node];
-      throw InvalidInput(
-          is_rotation(axis) ? given.angular_velocity_where : given.velocity_where,
-          fmt::format("node \"{}\" starts with a velocity in {}, {}", given.name, axis_names[axis],
-                      state.is_fixed[axis] ? "which a support holds; leave it out"
-                                           : "where nothing gives it an inertia; leave it out, or add a [[mass]]"));
-    }
-  }
-
-  void number_coordinates(Index offset) {
-    for (std::size_t node = 0; node < states_.size(); ++node) {
-      const NodeState& state = states_[node];
-      if (std::none_of(state.exists.begin(), state.exists.end(), [](bool e) { return e; }))
-        throw InvalidInput(state.where, fmt::format("node \"{}\" is joined by nothing: no beam, truss or mass names it",
-                                                    built_.structure.names[node]));
-      refuse_lost_velocity(node);
-      std::array<Index, 6> places{};
-      places.fill(ground);
-      for (std::size_t axis = 0; axis < 6; ++axis) {
-        if (!state.exists[axis] && !state.is_fixed[axis]) continue;
-        std::string name = built_.structure.names[node] + "." + axis_names[axis];
-        if (state.is_fixed[axis]) {
-          built_.fixed.insert(std::move(name));
-          continue;
-        }
-        places[axis] = offset + static_cast<Index>(built_.coordinates.size());
-        built_.coordinates.push_back({std::move(name), is_rotation(axis), state.mass[axis], state.velocity[axis]});
-      }
-      built_.structure.places.push_back(places);
-    }
-  }
-
   const StructureDescription& description_;
   const Parameters& parameters_;
   BuiltStructure built_;
-  ByName<Index> nodes_{"node"};
+  StructureNodes nodes_;
   ByName<Material> materials_{"material"};
   ByName<Section> sections_{"section"};
   ByName<int> lines_{"element"};  // beams and trusses that have a name
   // Where the others of each kind were given, by the nodes that they join.
   std::map<std::string, std::map<std::pair<Index, Index>, const Location*>> unnamed_;
-  std::vector<NodeState> states_;
 };
 
 }  // namespace
-
-void refuse_unfit_name(const std::string& name, const Location& where) {
-  const auto is_unfit = [](unsigned char c) {
-    return c < 0x20 || c == 0x7f || c == ',' || c == ';' || c == '"' || c == '/';
-  };
-  if (name.empty() || (name.front() != ' ' && name.back() != ' ' && name.find(" - ") == std::string::npos &&
-                       std::none_of(name.begin(), name.end(), is_unfit)))
-    return;
-  std::string shown = name;
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::replace_if(shown.begin(), shown.end(), is_control, '?');
-  throw InvalidInput(where,
-                     fmt::format("the name \"{}\" cannot head a column of results: no comma, semicolon, quote, slash, "
-                                 "control character, \" - \", or space at its ends",
-                                 shown));
-}
 
 BuiltStructure build_structure(const StructureDescription& description, const Parameters& parameters, Index offset) {
   return StructureBuilder(description, parameters).build(offset);
