@@ -5,10 +5,30 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <set>
 
 namespace rubato::numerics {
+namespace {
+
+bool invert(double pivot, double& inverse) {
+  inverse = 1.0 / pivot;
+  return std::abs(pivot) > 1e-290 && std::abs(pivot) < 1e290;
+}
+
+/// An entry of L and that of U across the diagonal, in one register.
+using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+
+inline Pair load(const double* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+
+inline void store(Pair pair, double* to) { std::memcpy(to, &pair, sizeof pair); }
+
+}  // namespace
 
 void KktFactor::order(Index first_row, std::span<const Entry> entries) {
   std::vector<Eigen::Triplet<double>> pattern;
@@ -92,44 +112,57 @@ int KktFactor::slot(Index i, Index j) const {
   const auto end = row_.begin() + start_[column + 1];
   const auto found = std::lower_bound(row_.begin() + start_[column], end, std::max(a, b));
   assert(found != end && *found == std::max(a, b));
-  const int place = static_cast<int>(size_) + static_cast<int>(found - row_.begin());
-  return a > b ? place : place + static_cast<int>(row_.size());
+  const int place = static_cast<int>(found - row_.begin()), first = static_cast<int>(size_);
+  return is_symmetric_ ? first + place : first + 2 * place + (a > b ? 0 : 1);
 }
 
 void KktFactor::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
 
-bool KktFactor::factorise() {
+bool KktFactor::factorise() { return is_symmetric_ ? factorise_symmetric() : factorise_both(); }
+
+bool KktFactor::factorise_symmetric() {
   const int n = static_cast<int>(size_);
   double* const diagonal = value_.data();
   double* const lower = diagonal + n;
-  double* const upper = is_symmetric_ ? lower : lower + row_.size();
   const int* const start = start_.data();
   const int* const row = row_.data();
   const int* target = target_.data();
   for (int j = 0; j < n; ++j) {
-    const double pivot = diagonal[j];
-    if (!(std::abs(pivot) > 1e-290 && std::abs(pivot) < 1e290)) return false;
-    const double inverse = 1.0 / pivot;
+    double inverse;
+    if (!invert(diagonal[j], inverse)) return false;
     diagonal[j] = inverse;
     const int end = start[j + 1];
-    if (is_symmetric_) {
-      for (int b = start[j]; b < end; ++b) {
-        const double scaled = lower[b] * inverse;
-        diagonal[row[b]] -= scaled * lower[b];
-        for (int a = b + 1; a < end; ++a) lower[*target++] -= scaled * lower[a];
-        lower[b] = scaled;
-      }
-      continue;
-    }
     for (int b = start[j]; b < end; ++b) {
-      const double scaled = lower[b] * inverse, across = upper[b];
-      diagonal[row[b]] -= scaled * across;
-      const double across_scaled = across * inverse;
-      for (int a = b + 1; a < end; ++a) {
-        lower[*target] -= lower[a] * across_scaled;
-        upper[*target++] -= scaled * upper[a];
-      }
+      const double scaled = lower[b] * inverse;
+      diagonal[row[b]] -= scaled * lower[b];
+      for (int a = b + 1; a < end; ++a) lower[*target++] -= scaled * lower[a];
       lower[b] = scaled;
+    }
+  }
+  return true;
+}
+
+bool KktFactor::factorise_both() {
+  const int n = static_cast<int>(size_);
+  double* const diagonal = value_.data();
+  double* const both = diagonal + n;
+  const int* const start = start_.data();
+  const int* const row = row_.data();
+  const int* target = target_.data();
+  for (int j = 0; j < n; ++j) {
+    double inverse;
+    if (!invert(diagonal[j], inverse)) return false;
+    diagonal[j] = inverse;
+    const int end = start[j + 1];
+    for (int b = start[j]; b < end; ++b) {
+      const double scaled = both[2 * b] * inverse, across = both[2 * b + 1];
+      diagonal[row[b]] -= scaled * across;
+      const Pair factor = {across * inverse, scaled};
+      for (int a = b + 1; a < end; ++a) {
+        double* const to = both + 2 * *target++;
+        store(load(to) - factor * load(both + 2 * a), to);
+      }
+      both[2 * b] = scaled;
     }
   }
   return true;
@@ -140,28 +173,36 @@ Index KktFactor::negative_pivots() const {
       std::count_if(value_.begin(), value_.begin() + size_, [](double pivot) { return pivot < 0.0; }));
 }
 
-void KktFactor::solve(double* x, double* rest) const {
-  const int n = static_cast<int>(size_), first_row = static_cast<int>(first_row_);
+template <int stride>
+void KktFactor::substitute(double* y) const {
+  const int n = static_cast<int>(size_);
   const double* const inverse = value_.data();
   const double* const lower = inverse + n;
-  const double* const upper = is_symmetric_ ? lower : lower + row_.size();
-  double* const y = x_.data();
-  const int* const position = position_.data();
+  const double* const upper = lower + stride - 1;
   const int* const start = start_.data();
   const int* const row = row_.data();
-  for (int i = 0; i < first_row; ++i) y[position[i]] = x[i];
-  for (int i = first_row; i < n; ++i) y[position[i]] = rest[i - first_row];
   for (int j = 0; j < n; ++j) {
     const double now = y[j];
-    for (int p = start[j]; p < start[j + 1]; ++p) y[row[p]] -= lower[p] * now;
+    for (int p = start[j]; p < start[j + 1]; ++p) y[row[p]] -= lower[stride * p] * now;
   }
   // Symmetric: U = D L^T; otherwise rows of U carry the pivots. The nearest row, known last, comes last.
-  const bool is_symmetric = is_symmetric_;
   for (int j = n - 1; j >= 0; --j) {
-    double now = is_symmetric ? y[j] * inverse[j] : y[j];
-    for (int p = start[j + 1] - 1; p >= start[j]; --p) now -= upper[p] * y[row[p]];
-    y[j] = is_symmetric ? now : now * inverse[j];
+    double now = stride == 1 ? y[j] * inverse[j] : y[j];
+    for (int p = start[j + 1] - 1; p >= start[j]; --p) now -= upper[stride * p] * y[row[p]];
+    y[j] = stride == 1 ? now : now * inverse[j];
   }
+}
+
+void KktFactor::solve(double* x, double* rest) const {
+  const int n = static_cast<int>(size_), first_row = static_cast<int>(first_row_);
+  double* const y = x_.data();
+  const int* const position = position_.data();
+  for (int i = 0; i < first_row; ++i) y[position[i]] = x[i];
+  for (int i = first_row; i < n; ++i) y[position[i]] = rest[i - first_row];
+  if (is_symmetric_)
+    substitute<1>(y);
+  else
+    substitute<2>(y);
   for (int i = 0; i < first_row; ++i) x[i] = y[position[i]];
   for (int i = first_row; i < n; ++i) rest[i - first_row] = y[position[i]];
 }

@@ -61,13 +61,19 @@ class KktFactor {
  private:
   void order(Index first_row, std::span<const Entry> entries);
   void find_factors(std::span<const Entry> entries);
+  bool factorise_symmetric();
+  bool factorise_both();
+  /// @param stride  1: L alone; 2: L and U in turn
+  template <int stride>
+  void substitute(double* y) const;
 
   Index size_ = 0, first_row_ = 0;
   bool is_symmetric_ = true;
   std::vector<int> position_;     // of an unknown in the order [size]
   std::vector<int> start_, row_;  // pattern of L below its diagonal, by columns, in the order
   std::vector<int> target_;       // where the product of two entries of a column goes, pair by pair
-  std::vector<double> value_;     // diagonal [size], L [entries], U by rows [entries] unless symmetric, a spare place
+  /// Diagonal [size]; L [entries], or unless symmetric L and U by rows in turn [2 entries]; a spare place.
+  std::vector<double> value_;
   mutable std::vector<double> x_;
 };
 
