@@ -6,6 +6,7 @@
 
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
+#include <rubato/analysis/steady/frequency_text.hpp>
 #include <rubato/analysis/steady/status_counts.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 
@@ -485,6 +486,12 @@ TEST(FrequencyResponse, OfOtherSolversRefusesStopsAndSaysWhatTakesThem) {
                                      "\"time_marching\"");
     }
   }
+}
+
+TEST(FrequencyText, TellsHertzBesideWhereAStudyExcitesByHertz) {
+  EXPECT_EQ(frequency_text(7.5, 1.0), "angular_frequency = 7.5 rad/s");
+  EXPECT_EQ(frequency_text(4.0 * std::numbers::pi, 0.5 / std::numbers::pi),
+            "angular_frequency = 12.5663706 rad/s (2 Hz)");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <rubato/analysis/steady/damper_curve_line.hpp>
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
+#include <rubato/analysis/steady/frequency_text.hpp>
 #include <rubato/analysis/sweep_samples.hpp>
 
 #include <fmt/format.h>
@@ -87,8 +88,8 @@ class Tables {
     }
     const std::size_t at = plan_.sweep.names().size();
     const double frequency = last_optimum_[at + 1], objective = last_optimum_[layouts_.objective()];
-    return fmt::format("{} {:.9g} {} at {} = {:.9g}, angular_frequency = {:.9g} rad/s{}", what, objective,
-                       unit_of("objective"), plan_.parameter, last_optimum_[at], frequency, certificate());
+    return fmt::format("{} {:.9g} {} at {} = {:.9g}, {}{}", what, objective, unit_of("objective"), plan_.parameter,
+                       last_optimum_[at], frequency_text(frequency, plan_.excitation_factor), certificate());
   }
 
  private:

@@ -1,6 +1,7 @@
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
+#include <rubato/analysis/steady/frequency_text.hpp>
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -114,7 +115,7 @@ std::string place_of(const FrequencyResponsePlan& plan, double point) {
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i)
     text += fmt::format("{} = {:.6g}, ", plan.sweep.names()[i], values[i]);
-  return text + fmt::format("angular_frequency = {:.9g} rad/s", plan.frequencies[plan.steps[step].frequency]);
+  return text + frequency_text(plan.frequencies[plan.steps[step].frequency], plan.excitation_factor);
 }
 
 std::string points_text(double count) { return fmt::format("{:.0f} point{}", count, count == 1.0 ? "" : "s"); }

@@ -9,6 +9,12 @@ function quantity_label(table, index) {
   return tells_curves && (!variable.unit || variable.unit === "1") ? `${variable.name} [SI]` : axis_label(variable);
 }
 
+/** "7.5 rad/s", and "7.5 rad/s (1.1937 Hz)" where the study excites by a parameter in hertz. */
+function frequency_text(table, angular_frequency) {
+  const text = `${Number(angular_frequency.toPrecision(6))} rad/s`;
+  return (table.attributes.excitation ?? "").startsWith("2 pi ") ? `${text} (${Number((angular_frequency / (2 * Math.PI)).toPrecision(5))} Hz)` : text;
+}
+
 /** 0.30000000000000004 as "0.3"; a word where the variable has words. */
 function value_text(variable, value) {
   if (value === null || value === undefined) return "–";

@@ -71,7 +71,8 @@ function damper_figure(table, optimum, linear) {
         layout.yaxis2 = axis(axis_label(frequency), {domain: [0, 0.32]});
         for (const curve of curves.slice(0, most_in_legend)) {
           traces.push({type: "scatter", mode: "lines+markers", x: x_of(curve), y: slice(frequency.index, 0, curve), yaxis: "y2", showlegend: false,
-                       line: {color: "#1c242c", width: 1.3}, marker: {size: 3}, hovertemplate: "%{x:.6~g}<br>%{y:.6~g} rad/s<extra></extra>"});
+                       text: slice(frequency.index, 0, curve).map((at) => (at === null ? "" : frequency_text(table, at))),
+                       line: {color: "#1c242c", width: 1.3}, marker: {size: 3}, hovertemplate: "%{x:.6~g}<br>%{text}<extra></extra>"});
         }
       }
       const best = named && variable_of(optimum, variable.name);
@@ -82,7 +83,7 @@ function damper_figure(table, optimum, linear) {
         const y = Math.max(...values.filter((value) => value !== null));
         const at = optimum.overview[variable_of(optimum, "angular_frequency")?.index ?? 0][0][0];
         const lines = [`<b>${plot_text(table.variables[abscissa].name)} = ${Number(x.toPrecision(6))}</b>`,
-                       `${Number(y.toPrecision(7))} ${pretty_unit(variable.unit)}${frequency ? ` at ${Number(at.toPrecision(6))} rad/s` : ""}`];
+                       `${Number(y.toPrecision(7))} ${pretty_unit(variable.unit)}${frequency ? ` at ${frequency_text(table, at)}` : ""}`];
         if (kind) lines.push(`certificate: ${value_text(kind, optimum.overview[kind.index][0][0])}`);
         traces.push({type: "scatter", mode: "markers", x: [x], y: [y], name: "Optimum", showlegend: true, hovertemplate: `${lines.join("<br>")}<extra></extra>`,
                      marker: {symbol: "star", size: 15, color: "#d55e00", line: {color: "#ffffff", width: 1}}});
