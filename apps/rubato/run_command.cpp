@@ -9,11 +9,13 @@
 #include <rubato/io/tee_sink.hpp>
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
+#include <rubato/report/results_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
 #include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <unistd.h>
 
@@ -159,6 +161,31 @@ int conclude(const PreparedStudy& study, const std::vector<std::optional<RunRepo
   return status;
 }
 
+/// The tables that the results file of a folder tells of, as CSV files; none where there is no such file.
+std::vector<std::string> tables_in(const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  try {
+    const report::ResultsTables results(folder / "results.nc");
+    for (const auto& analysis : results.analyses())
+      for (const auto& table : analysis.tables)
+        files.push_back(analysis.name + (table->name().empty() ? "" : "." + table->name()) + ".csv");
+  } catch (const std::exception&) {  // it is about to be replaced, whatever it is
+  }
+  return files;
+}
+
+/// Tells which tables of a former run stand beside the results as if they were theirs.
+void tell_of_former(const std::vector<std::string>& former, const std::filesystem::path& folder) {
+  const std::vector<std::string> written = tables_in(folder);
+  std::vector<std::string> left;
+  for (const std::string& file : former)
+    if (std::find(written.begin(), written.end(), file) == written.end() && std::filesystem::exists(folder / file))
+      left.push_back(file);
+  if (left.empty()) return;
+  tell(fmt::format("warning: {} still holds {} of a former run, which these results do not have: {}", folder.string(),
+                   left.size() == 1 ? "a table" : "tables", fmt::join(left, ", ")));
+}
+
 /// For ParaView. Returns false, and says why, where it was not written; the results are safe.
 bool write_motion(const std::filesystem::path& folder) {
   try {
@@ -180,6 +207,7 @@ int run(const RunOptions& options) {
   require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
+  const std::vector<std::string> former = tables_in(folder);
   try {
     io::prepare_output_folder(folder, study.expected_bytes());
     const Journals journals = open_journals(study, options, folder);
@@ -198,6 +226,7 @@ int run(const RunOptions& options) {
     std::fflush(nullptr);
     std::_Exit(exit_failed);
   }
+  if (!options.quiet) tell_of_former(former, folder);
   if (options.vtk && !write_motion(folder) && status == exit_done) status = exit_failed;
   try {
     report::write_report(folder / "results.nc", folder / "report.html");

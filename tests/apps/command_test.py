@@ -158,6 +158,15 @@ class Command(unittest.TestCase):
             differing = [line for line, other in zip(one, two, strict=True) if line != other]
             self.assertTrue(all(":history" in line for line in differing), differing)
 
+    def test_tables_of_a_former_run_are_told(self):
+        study = EXAMPLES / "single-mass-slider" / "study.toml"
+        self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "response", "exact").stderr)
+        again = self.run_command("run", "-o", "twice", study, "--only", "exact")
+        self.assertEqual(again.returncode, 0)
+        self.assertIn("warning: twice still holds tables of a former run, which these results do not have: response.csv, "
+                      "response.energy.csv\n", again.stderr)
+        self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "exact").stderr)
+
     def test_a_wrong_study_leaves_earlier_results_alone(self):
         study = EXAMPLES / "single-mass" / "study.toml"
         self.run_command("run", study, "-o", "out", "-q")
