@@ -252,8 +252,11 @@ int check(const StudyOptions& options) {
                counted(study.system.slider_count(), "slider"),
                study.system.stop_count() > 0 ? ", " + counted(study.system.stop_count(), "stop") : "");
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
-  for (std::size_t i = 0; i < study.analyses.size(); ++i)
+  for (std::size_t i = 0; i < study.analyses.size(); ++i) {
     fmt::print("  {}: {}\n", study.analyses[i].name, study.outlines[i].summary);
+    for (const std::string& warning : study.outlines[i].warnings)
+      tell(fmt::format("{}: warning: analysis \"{}\": {}", study.description.file, study.analyses[i].name, warning));
+  }
   return exit_done;
 }
 

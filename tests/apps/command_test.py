@@ -167,6 +167,39 @@ class Command(unittest.TestCase):
                       "response.energy.csv\n", again.stderr)
         self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "exact").stderr)
 
+    def test_an_analysis_without_a_static_start_leaves_the_others_alone(self):
+        (self.folder / "falls.toml").write_text("""
+[[body]]
+name = "bob"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 0.0]
+[[joint]]
+name = "rail"
+type = "prismatic"
+between = ["ground", "bob"]
+at = [0.0, 0.0]
+axis = [0.0, 1.0]
+[gravity]
+acceleration = [0.0, -9.81]
+[[analysis]]
+name = "held"
+type = "modes"
+about = "static"
+[[analysis]]
+name = "falls"
+type = "transient"
+step = 0.01
+duration = 0.1
+""")
+        result = self.run_command("run", "falls.toml", "-o", "out", "-q")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn('analysis "held" failed: no equilibrium was found', result.stderr)
+        self.assertEqual(len(self.rows("out/falls.csv")), 12)
+        check = self.run_command("check", "falls.toml")
+        self.assertEqual(check.returncode, 0)
+        self.assertIn('falls.toml: warning: analysis "held": it will fail: no equilibrium was found', check.stderr)
+
     def test_a_wrong_study_leaves_earlier_results_alone(self):
         study = EXAMPLES / "single-mass" / "study.toml"
         self.run_command("run", study, "-o", "out", "-q")

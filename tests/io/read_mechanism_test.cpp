@@ -148,10 +148,10 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(
       verdict_with("angle = 0.3", "angle = 30.0"),
       "study.toml:19:9: error: joint \"A\": angle is 30 rad, more than a turn; if degrees are meant, write \"30 * "
-      "pi/180\"");
+      "pi/180\", if turns, \"9.5493 * pi\"");
   EXPECT_EQ(verdict_with("at = \"pi/2\"", "at = 180"),
             "study.toml:21:15: error: joint \"A\": lock: at is 180 rad, more than a turn; if degrees are meant, write "
-            "\"180 * pi/180\"");
+            "\"180 * pi/180\", if turns, \"57.2958 * pi\"");
   EXPECT_EQ(
       verdict_with("at = \"pi/2\"", "at = 0.3"),
       "study.toml:21:8: error: joint \"A\": lock: the joint starts at its lock, 0.3; say from which side it comes "

@@ -34,9 +34,9 @@ def is_valid(study):
 
 
 def check(path):
-    """Exit status and message of `rubato check`."""
+    """Exit status of `rubato check`, and its message without warnings, which are of the mechanism and not of the file."""
     result = subprocess.run([rubato, "check", str(path)], capture_output=True, text=True)
-    return result.returncode, result.stderr
+    return result.returncode, "".join(line for line in result.stderr.splitlines(True) if ": warning: " not in line)
 
 
 def to_toml(value):

@@ -71,18 +71,20 @@ void refuse_displacements(const std::string& title, const model::StaticDescripti
   throw InvalidInput(where, title + "displacements are held in structures; a mechanism is held by its joints");
 }
 
-void check_mechanism_static(const std::string& name, const Location& where, const model::StaticDescription& description,
-                            const system::Mechanism& mechanism) {
+std::vector<std::string> check_mechanism_static(const std::string& name, const Location& where,
+                                                const model::StaticDescription& description,
+                                                const system::Mechanism& mechanism) {
   refuse_displacements("analysis \"" + name + "\": ", description);
   std::vector<std::string> warnings;
-  (void)assembled_start(where, mechanism, warnings);
+  (void)assembled_start(where, mechanism, warnings, false);
   (void)observed_or_all(description.observe, mechanism);
+  return warnings;
 }
 
 RunReport run_mechanism_static(const std::string& name, const Location& where,
                                const model::StaticDescription& description, const system::Mechanism& mechanism,
                                RunContext& context) {
-  check_mechanism_static(name, where, description, mechanism);
+  refuse_displacements("analysis \"" + name + "\": ", description);
   RunReport report;
   const system::State start = assembled_start(where, mechanism, report.warnings, false);
   const MechanismStatic found = equilibrium_near(start, mechanism);

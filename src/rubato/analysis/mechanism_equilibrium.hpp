@@ -32,8 +32,10 @@ MechanismStatic equilibrium_near(const system::State& start, const system::Mecha
 void refuse_displacements(const std::string& title, const model::StaticDescription& description);
 
 /// Evaluates and checks a static analysis of a mechanism without running it. Throws InvalidInput.
-void check_mechanism_static(const std::string& name, const Location& where, const model::StaticDescription& description,
-                            const system::Mechanism& mechanism);
+/// @return what its start warns of
+std::vector<std::string> check_mechanism_static(const std::string& name, const Location& where,
+                                                const model::StaticDescription& description,
+                                                const system::Mechanism& mechanism);
 
 /// One row: the positions of what is observed, the coordinates that the joints leave free, and the reactions. An
 /// equilibrium that is not found is a failure; the best configuration is written. One that is not stable is told.

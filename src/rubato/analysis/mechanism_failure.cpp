@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rubato::analysis {
@@ -60,10 +61,48 @@ std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
   return fmt::format("the friction of \"{}\"", model.frictions[i - model.locks.size()].name);
 }
 
+std::string described(const integrate::LockEvent& event, const system::Mechanism& mechanism) {
+  const auto& model = mechanism.model();
+  const bool is_lock = event.friction < 0;
+  const std::string& name = is_lock ? model.locks[static_cast<std::size_t>(event.lock)].name
+                                    : model.frictions[static_cast<std::size_t>(event.friction)].name;
+  const char* what = is_lock ? (event.has_engaged ? "locks" : "lets go") : (event.has_engaged ? "sticks" : "slips");
+  return fmt::format("\"{}\" ({} at t = {:.9g} s)", name, what, event.t);
+}
+
+/// The last joints that changed, each once, the last first; empty: none did.
+std::string last_to_change(std::span<const integrate::LockEvent> events, const system::Mechanism& mechanism) {
+  constexpr std::size_t most = 3;
+  std::vector<const integrate::LockEvent*> last;
+  for (auto event = events.rbegin(); event != events.rend() && last.size() < most; ++event) {
+    const auto is_same = [&](const integrate::LockEvent* other) {
+      return other->lock == event->lock && other->friction == event->friction;
+    };
+    if (std::none_of(last.begin(), last.end(), is_same)) last.push_back(&*event);
+  }
+  std::vector<std::string> told;
+  for (const auto* event : last) told.push_back(described(*event, mechanism));
+  return told.empty() ? "" : fmt::format("; the last to change: {}", fmt::join(told, ", "));
+}
+
+/// A strut whose ends have all but met, where its direction is lost; empty: none.
+std::string collapsed_strut(const system::Mechanism& mechanism, const system::State& state) {
+  constexpr double share = 1e-3;  // of its length at the start
+  const auto find = [&](const auto& coordinates) -> std::string {
+    for (const auto& coordinate : coordinates)
+      if (std::string_view(coordinate.s.name()) == "length" &&
+          coordinate.s.value(state.q.data()) < share * coordinate.s.value(mechanism.start().q.data()))
+        return coordinate.name;
+    return {};
+  };
+  const std::string in_plane = find(mechanism.model().joint_coordinates);
+  return in_plane.empty() ? find(mechanism.model().space_coordinates) : in_plane;
+}
+
 }  // namespace
 
 std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism,
-                       const system::State& state, Index chattering, const std::string& advice_on_step) {
+                       const system::State& state, const Transitions& transitions, const std::string& advice_on_step) {
   const std::string at =
       report.step.worst >= 0
           ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
@@ -88,9 +127,17 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
       what = "the error asked for a step below the smallest";
       remedy = advice_on_step;
       break;
+    case integrate::StepOutcome::crawls:
+      what = "it crawled: the last 2,000 steps were shorter than 1e-8 of the run" +
+             last_to_change(transitions.all, mechanism);
+      remedy = transitions.all.empty()
+                   ? "take a larger tolerance, or equal steps"
+                   : "look for friction, a drive and a lock that meet on one freedom, give a lock damping, or take a "
+                     "larger tolerance or equal steps";
+      break;
     case integrate::StepOutcome::no_way_on:
-      if (chattering >= 0) {
-        what = chattering_part(chattering, mechanism) + " changed a hundred times, and nothing moved";
+      if (transitions.chattering >= 0) {
+        what = chattering_part(transitions.chattering, mechanism) + " changed a hundred times, and nothing moved";
         remedy =
             "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, or take "
             "\"friction\" in its place), and for a load that jumps as the joint begins to move";
@@ -104,11 +151,21 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
   }
   using integrate::StepOutcome;
   const StepOutcome outcome = report.step.outcome;
-  if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || outcome == StepOutcome::too_small) {
+  const bool is_stuck = outcome == StepOutcome::too_small || outcome == StepOutcome::crawls;
+  if (outcome != StepOutcome::no_way_on) {
+    const std::string strut = collapsed_strut(mechanism, state);
+    if (!strut.empty())
+      return fmt::format(
+          "at t = {} s the ends of the strut \"{}\" meet: at length 0 its force has no direction; give it a lock at "
+          "its "
+          "shortest length, or ends that pass by each other",
+          report.failed_at, strut);
+  }
+  if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || is_stuck) {
     const std::string part = non_finite_part_ahead(report, mechanism, state);
     if (!part.empty()) return fmt::format("at t = {} s {} has no finite value from there on", report.failed_at, part);
   }
-  if (outcome == StepOutcome::not_converged || outcome == StepOutcome::too_small || outcome == StepOutcome::singular) {
+  if (outcome == StepOutcome::not_converged || outcome == StepOutcome::singular || is_stuck) {
     const std::vector<std::string> joints = singular_joints(mechanism, state);
     if (!joints.empty()) {
       what +=

@@ -4,12 +4,15 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 
+#include <fmt/format.h>
+
 #include <variant>
 
 namespace rubato::analysis {
 namespace {
 
-constexpr double resolution = 1e-12;  // of events, over the duration
+constexpr double resolution = 1e-12;      // of events, over the duration
+constexpr double least_tolerance = 1e-9;  // below, steps measure what Newton's method leaves: see the known issues
 
 }  // namespace
 
@@ -43,8 +46,15 @@ integrate::AdaptiveReport MechanismMarch::go_to(double end, integrate::Observer*
 }
 
 std::string MechanismMarch::failure(const integrate::AdaptiveReport& report) const {
-  return failure_of(report.march, mechanism_, state_, timeline_.chattering(),
-                    advice_on_smallest(plan_.transient.automatic->plan, plan_.transient.duration));
+  const AutomaticStep& step = *plan_.transient.automatic;
+  const std::string advice =
+      !has_equal_steps() && step.tolerance < least_tolerance
+          ? fmt::format(
+                "the tolerance {:.3g} is below {:.3g}, where the error of a step is what Newton's method leaves: "
+                "take a larger one",
+                step.tolerance, least_tolerance)
+          : advice_on_smallest(step.plan, plan_.transient.duration);
+  return failure_of(report.march, mechanism_, state_, {timeline_.chattering(), timeline_.events()}, advice);
 }
 
 }  // namespace rubato::analysis

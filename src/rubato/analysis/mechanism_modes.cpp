@@ -137,8 +137,7 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
   }
   plan.about_equilibrium = true;
   MechanismStatic found = equilibrium_near(plan.state, mechanism);
-  if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
-    throw InvalidInput(*description.about_equilibrium, title + complaint);
+  plan.failure = found.complaint(mechanism);
   plan.state = std::move(found.state);
   return plan;
 }
@@ -147,6 +146,13 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
                               const system::Mechanism& mechanism, RunContext& context) {
   RunReport report;
   report.warnings = plan.warnings;
+  report.message = plan.failure;
+  if (plan.reached && !plan.reached->motion.failure.empty())
+    report.message = fmt::format("\"{}\" leads nowhere: {}", plan.reached->analysis, plan.reached->motion.failure);
+  if (!report.message.empty()) {
+    report.status = RunStatus::failed;
+    return report;
+  }
   const system::State state = plan.reached ? reach(name, *plan.reached, mechanism, context, report) : plan.state;
   if (!report.message.empty()) return report;
   system::MechanismEquations equations(mechanism);

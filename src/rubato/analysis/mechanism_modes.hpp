@@ -24,12 +24,13 @@ struct MechanismModesPlan {
   ModesPlan modes;      ///< a count of 0: all, at most 20
   system::State state;  ///< at rest, with the multipliers of its loads; of one that is reached the start
   std::vector<std::string> warnings;
+  std::string failure;  ///< why the equilibrium was not found: the analysis fails; empty: nothing did
   bool about_equilibrium = false;
   std::optional<Reached> reached;
 };
 
 /// Evaluates a description and finds the configuration. Throws InvalidInput, at its place, for a mechanism that cannot
-/// be assembled, an equilibrium that is not found, a transient that is none of the study's, a count that is no whole
+/// be assembled, a transient that is none of the study's, a count that is no whole
 /// number of at least 1, and a mechanism too large for its dense eigenproblem (3,000 coordinates).
 MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location& where,
                                         const model::ModesDescription& description, const system::Mechanism& mechanism,

@@ -24,6 +24,16 @@ std::string row_names(const std::vector<Index>& rows, const system::Mechanism& m
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Of a row of constraints, "JOINT.lock_moment", by the name that its force gives it.
+const char* unit_of_row(const std::string& row) {
+  const std::size_t dot = row.rfind('.');
+  return dot != std::string::npos && row.find("moment", dot) != std::string::npos ? "rad" : "m";
+}
+
+const char* unit_of_coordinate(Index coordinate, const system::Mechanism& mechanism) {
+  return mechanism.model().is_rotation[static_cast<std::size_t>(coordinate)] != 0 ? "rad" : "m";
+}
+
 Index find(const std::string& name, const Location& where, const system::Mechanism& mechanism) {
   const auto& known = mechanism.coordinates();
   const auto found = std::find(known.begin(), known.end(), name);
@@ -65,6 +75,11 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
   const bool is_paper = description.controller == "cardona_cassano";
   if (is_paper) plan.controller = integrate::CardonaCassano{};
   if (description.controller == "fixed") plan.controller = integrate::FixedStep{};
+  if (description.locate_events && !*description.locate_events)
+    throw InvalidInput(description.where,
+                       title +
+                           "events = \"pass\" is for structures: a lock or a joint that sticks changes what the step "
+                           "solves, so that steps of mechanisms always end there; remove it");
   plan.locate_events = true;
   plan.rebuild = description.rebuild;
   const double largest = std::min(duration / 50.0, period_limit(mechanism));
@@ -95,16 +110,31 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
   return step;
 }
 
-/// From an equilibrium at rest: with the velocities and accelerations that the drives have at t = 0.
-system::State set_in_motion(const Location& where, const system::Mechanism& mechanism, const system::State& at_rest) {
-  if (mechanism.model().drives.empty()) return at_rest;
+void warn_of_velocities(const integrate::ConsistentStart& start, const system::Mechanism& mechanism,
+                        std::vector<std::string>& warnings) {
+  if (start.most_changed < 0) return;
+  warnings.push_back(fmt::format(
+      "the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
+      "{:.4g} {}/s, which {} {:.4g} J",
+      mechanism.coordinates()[static_cast<std::size_t>(start.most_changed)], start.velocity_changed,
+      unit_of_coordinate(start.most_changed, mechanism), start.energy_lost >= start.drive_work ? "took" : "gave",
+      std::abs(start.energy_lost - start.drive_work)));
+}
+
+/// From an equilibrium at rest: with the velocities that are given, and the velocities and accelerations that the
+/// drives have at t = 0.
+system::State set_in_motion(const Location& where, const system::Mechanism& mechanism, system::State at_rest,
+                            std::vector<std::string>& warnings) {
+  at_rest.v = mechanism.start().v;
+  if (mechanism.model().drives.empty() && at_rest.v.isZero(0.0)) return at_rest;
   system::MechanismEquations equations(mechanism);
-  const auto start = integrate::make_consistent(equations, at_rest);
+  const auto start = integrate::make_consistent(equations, std::move(at_rest));
   if (!start.is_consistent)
     throw InvalidInput(
         where,
         "no velocities and accelerations were found at the equilibrium that the drives and joints allow; "
         "look for a drive that the joints hinder there");
+  if (!mechanism.start().v.isZero(0.0)) warn_of_velocities(start, mechanism, warnings);
   return start.state;
 }
 
@@ -148,6 +178,21 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, sys
                        "so large a coefficient their reactions grow without bound; take a smaller one");
 }
 
+/// A drive, or joints that had to move, may put a coordinate beyond its lock, which was meant to be reached.
+void warn_of_locks_behind(const system::Mechanism& mechanism, const system::State& start,
+                          std::vector<std::string>& warnings) {
+  const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    const model::Lock& lock = locks[i];
+    const double beyond = lock.sign * (lock.s.value(start.q.data()) - lock.at);
+    if (start.phase[i] != model::lock_open || !(beyond > 1e-9 * (1.0 + std::abs(lock.at)))) continue;
+    warnings.push_back(
+        fmt::format("\"{0}\" starts {1:.4g} {2} beyond its lock at {3:.6g} {2}, which does not hold it there: it would "
+                    "have to come back and reach the lock from the other side",
+                    lock.name, beyond, lock.s.is_angle() ? "rad" : "m", lock.at));
+  }
+}
+
 }  // namespace
 
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
@@ -159,12 +204,12 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
     std::vector<std::string> drives;
     for (const auto& drive : mechanism.model().drives) drives.push_back(fmt::format("\"{}\"", drive.name));
     throw InvalidInput(
-        where,
-        fmt::format("drives contradict each other or the joints: all hold at the start, but at once \"{}\" would "
-                    "come apart at {:.4g} m/s or rad/s; leave one of the drives of {} out, or let it say what the "
-                    "others make of it",
-                    mechanism.rows()[static_cast<std::size_t>(start.worst_rate)], start.gap_rate,
-                    fmt::join(drives, ", ")));
+        where, fmt::format(
+                   "drives contradict each other or the joints: all hold at the start, but at once \"{}\" would "
+                   "come apart at {:.4g} {}/s; leave one of the drives of {} out, or let it say what the "
+                   "others make of it",
+                   mechanism.rows()[static_cast<std::size_t>(start.worst_rate)], start.gap_rate,
+                   unit_of_row(mechanism.rows()[static_cast<std::size_t>(start.worst_rate)]), fmt::join(drives, ", ")));
   }
   if (!start.is_consistent) {
     equations.go_to(start.state, model::Side::right);
@@ -177,23 +222,19 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
     const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
     if (!start.redundant.empty())
       throw InvalidInput(where, fmt::format("the joints cannot be assembled: they contradict each other; \"{}\" stays "
-                                            "apart by {:.4g}, and {} can only repeat what other joints say",
-                                            row, start.gap, row_names(start.redundant, mechanism)));
-    throw InvalidInput(where, fmt::format("the joints cannot be assembled: \"{}\" stays apart by {:.4g}; look at the "
-                                          "places and lengths around it",
-                                          row, start.gap));
+                                            "apart by {:.4g} {}, and {} can only repeat what other joints say",
+                                            row, start.gap, unit_of_row(row), row_names(start.redundant, mechanism)));
+    throw InvalidInput(where,
+                       fmt::format("the joints cannot be assembled: \"{}\" stays apart by {:.4g} {}; look at the "
+                                   "places and lengths around it",
+                                   row, start.gap, unit_of_row(row)));
   }
   if (start.most_moved >= 0)
-    warnings.push_back(
-        fmt::format("the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
-                    "{:.4g}",
-                    coordinate(start.most_moved), start.position_moved));
-  if (moves && start.most_changed >= 0)
     warnings.push_back(fmt::format(
-        "the velocities given do not satisfy the joints; they were changed, \"{}\" most, by "
-        "{:.4g}, which {} {:.4g} J",
-        coordinate(start.most_changed), start.velocity_changed, start.energy_lost >= start.drive_work ? "took" : "gave",
-        std::abs(start.energy_lost - start.drive_work)));
+        "the positions given do not satisfy the joints; they were moved, \"{}\" most, by "
+        "{:.4g} {}",
+        coordinate(start.most_moved), start.position_moved, unit_of_coordinate(start.most_moved, mechanism)));
+  if (moves) warn_of_velocities(start, mechanism, warnings);
   if (!start.redundant.empty())
     warnings.push_back(
         fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "
@@ -251,24 +292,22 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   }
   transient.duration = positive_or(description.duration, 0.0, title + "duration", parameters);
   transient.energy = description.energy;
-  transient.start = assembled_start(where, mechanism, plan.warnings);
+  transient.start = assembled_start(where, mechanism, plan.warnings, !description.initial);
   if (description.initial) {
     refuse_displacements(title, *description.initial);
-    Index fastest = 0;
-    if (mechanism.size() > 0 && mechanism.start().v.cwiseAbs().maxCoeff(&fastest) > 0.0)
-      throw InvalidInput(
-          where, fmt::format("{}initial = \"static\" starts at rest, and \"{}\" is given a velocity; remove one "
-                             "of them",
-                             title, mechanism.coordinates()[static_cast<std::size_t>(fastest)]));
     const MechanismStatic found = equilibrium_near(transient.start, mechanism);
-    if (const std::string complaint = found.complaint(mechanism); !complaint.empty())
-      throw InvalidInput(where, title + complaint);
-    if (!found.is_stable)
-      plan.warnings.push_back(
-          "the equilibrium at the start is not stable: what moves from there begins with round-off");
-    transient.start = set_in_motion(where, mechanism, found.state);
+    plan.failure = found.complaint(mechanism);
+    if (plan.failure.empty()) {
+      if (!found.is_stable)
+        plan.warnings.push_back(
+            "the equilibrium at the start is not stable: what moves from there begins with round-off");
+      transient.start = set_in_motion(where, mechanism, found.state, plan.warnings);
+    } else {
+      plan.failure = "it has no static start: " + plan.failure;
+    }
   }
-  settle_start(where, mechanism, transient.start);
+  if (plan.failure.empty()) settle_start(where, mechanism, transient.start);
+  warn_of_locks_behind(mechanism, transient.start, plan.warnings);
   if (description.automatic_step) {
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
                                          transient.start, parameters, transient.duration);

@@ -14,6 +14,7 @@ struct MechanismPlan {
   bool allow_unstable = false;
   bool project_velocities = false;
   std::vector<std::string> warnings;  ///< what the start took: parts that moved, constraints that repeat others
+  std::string failure;  ///< why the equilibrium to start from was not found: the analysis fails; empty: nothing did
 
   std::string summary() const;
 };

@@ -94,14 +94,15 @@ void write_events(const std::string& name, const std::vector<integrate::LockEven
   std::vector<std::string> joints;
   for (const auto& lock : locks) joints.push_back(lock.name);
   for (const auto& friction : mechanism.model().frictions) joints.push_back(friction.name);
-  const auto rows = sink.open({name,
-                               "events",
-                               "time",
-                               {scalar("time", "s", "when it happened"),
-                                {"joint", "1", "whose lock or friction", "", {}, joints},
-                                {"event", "1", "what it did", "", {}, {"released", "engaged", "slips", "sticks"}},
-                                scalar("energy_lost", "J", "energy that the lock took")},
-                               {{"type", "events"}}});
+  const auto rows = sink.open(
+      {name,
+       "events",
+       "time",
+       {scalar("time", "s", "when it happened"),
+        {"joint", "1", "whose lock or friction", "", {}, joints},
+        {"event", "1", "what it did", "", {}, {"lets_go", "locks", "slips", "sticks"}},
+        scalar("energy_lost", "J", "energy that a rigid lock took, or that a damped stop still held as it let go")},
+       {{"type", "events"}}});
   for (const auto& event : events) {
     const bool is_friction = event.friction >= 0;
     const double part = is_friction ? static_cast<double>(locks.size()) + event.friction : event.lock;

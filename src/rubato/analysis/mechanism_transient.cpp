@@ -102,6 +102,13 @@ class MechanismObserver final : public integrate::Observer {
   bool last_recorded_ = false;
 };
 
+/// What the impact of a rigid lock took, or the spring of a damped stop still held as it let go.
+std::string energy_told(const integrate::LockEvent& event) {
+  if (!(event.energy_lost > 0.0)) return {};
+  if (event.has_engaged) return fmt::format(", taking {:.4g} J", event.energy_lost);
+  return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
+}
+
 /// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
 void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism,
                    std::vector<std::string>& findings) {
@@ -109,10 +116,9 @@ void report_events(const std::vector<integrate::LockEvent>& events, const system
   std::vector<long> changes(mechanism.model().frictions.size(), 0);
   for (const auto& event : events) {
     if (event.friction < 0) {
-      findings.push_back(
-          fmt::format("\"{}\" {} at t = {:.9g} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
-                      event.has_engaged ? "locks" : "lets go", event.t,
-                      event.energy_lost > 0.0 ? fmt::format(", taking {:.4g} J", event.energy_lost) : ""));
+      findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s{}",
+                                     mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
+                                     event.has_engaged ? "locks" : "lets go", event.t, energy_told(event)));
     } else if (++changes[static_cast<std::size_t>(event.friction)] <= most_told) {
       findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s",
                                      mechanism.model().frictions[static_cast<std::size_t>(event.friction)].name,
@@ -130,6 +136,13 @@ void report_events(const std::vector<integrate::LockEvent>& events, const system
 RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
                         RunContext& context) {
   const TransientPlan& transient = plan.transient;
+  if (!plan.failure.empty()) {
+    RunReport failed;
+    failed.status = RunStatus::failed;
+    failed.message = plan.failure;
+    failed.warnings = plan.warnings;
+    return failed;
+  }
   MechanismMarch march(plan, mechanism);
   MechanismRecorder recorder(name, plan, mechanism, context.sink);
   MechanismObserver observer(transient, mechanism, recorder, march.timeline(), context);

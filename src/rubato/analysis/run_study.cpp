@@ -186,20 +186,33 @@ namespace {
                                  analysis.name));
 }
 
+/// What the plan of an analysis of a mechanism warns of, and that it will fail.
+template <typename Plan>
+std::vector<std::string> warnings_of(const Plan& plan) {
+  std::vector<std::string> warnings = plan.warnings;
+  if (!plan.failure.empty()) warnings.push_back("it will fail: " + plan.failure);
+  return warnings;
+}
+
 AnalysisOutline check_mechanism(const model::AnalysisDescription& analysis, const StudyInput& input) {
   const system::Mechanism& mechanism = *input.mechanism;
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
     const MechanismPlan plan = plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters);
-    return {plan.summary(),
-            plan.transient.rows * (10.0 + 3.0 * static_cast<double>(plan.transient.observed.size())) * 28.0};
+    AnalysisOutline outline{
+        plan.summary(),
+        plan.transient.rows * (10.0 + 3.0 * static_cast<double>(plan.transient.observed.size())) * 28.0};
+    outline.warnings = warnings_of(plan);
+    return outline;
   }
   if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
-    check_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism);
-    return {"static equilibrium of a mechanism", 100.0 * static_cast<double>(mechanism.size())};
+    AnalysisOutline outline{"static equilibrium of a mechanism", 100.0 * static_cast<double>(mechanism.size())};
+    outline.warnings = check_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism);
+    return outline;
   }
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task)) {
-    (void)plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input);
-    return {"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(mechanism.size())};
+    AnalysisOutline outline{"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(mechanism.size())};
+    outline.warnings = warnings_of(plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input));
+    return outline;
   }
   refuse_of_mechanism(analysis);
 }

@@ -8,10 +8,11 @@ namespace rubato::analysis {
 
 /// What an analysis would do, in a line for people, and how much it would write.
 struct AnalysisOutline {
-  std::string summary;          ///< "transient, generalized_alpha, 12000 steps of 0.005 s"
-  double expected_bytes = 0.0;  ///< of the results, roughly
-  double points = 0.0;          ///< of a sweep; 0 for other analyses
-  double memory = 0.0;          ///< what has to be kept until its end [bytes], roughly
+  std::string summary;                     ///< "transient, generalized_alpha, 12000 steps of 0.005 s"
+  double expected_bytes = 0.0;             ///< of the results, roughly
+  double points = 0.0;                     ///< of a sweep; 0 for other analyses
+  double memory = 0.0;                     ///< what has to be kept until its end [bytes], roughly
+  std::vector<std::string> warnings = {};  ///< what a run would warn of, as far as it is known before
 };
 
 /// Evaluates an analysis and checks that it can run. Throws InvalidInput.

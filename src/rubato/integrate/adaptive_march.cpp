@@ -150,7 +150,7 @@ class Marcher {
     else if (!is_event)
       wanted_ = std::max(wanted_, decision.next);
     accept(length, error);
-    if (crawls(length.step)) return fail({StepOutcome::too_small, -1}, length.step);
+    if (crawls(length.step)) return fail({StepOutcome::crawls, -1}, length.step);
     if (is_event && base_.t < end_ && goes_on_) pass_event();
   }
 

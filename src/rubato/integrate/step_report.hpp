@@ -12,6 +12,7 @@ enum class StepOutcome {
   not_finite,     ///< a NaN or an infinity appeared
   singular,       ///< the effective matrix of this step cannot be factorised
   too_small,      ///< the error asks for a step below the smallest (automatic steps)
+  crawls,         ///< steps were so short for so long that the run would not end (automatic steps)
   no_way_on,      ///< no consistent state from which to go on after a transition, or a jump of a load or a drive
 };
 

@@ -50,10 +50,11 @@ double MechanismAssembly::at_least_zero(const Quantity& quantity, const std::str
 
 double MechanismAssembly::angle(const Quantity& quantity, const std::string& what) const {
   const double value = number(quantity, what);
-  if (!(std::abs(value) <= largest_angle))
-    throw InvalidInput(
-        quantity.where,
-        fmt::format("{} is {} rad, more than a turn; if degrees are meant, write \"{} * pi/180\"", what, value, value));
+  const bool is_in_radians = std::isfinite(value) && quantity.expression.find("pi") != std::string::npos;
+  if (!(std::abs(value) <= largest_angle) && !is_in_radians)
+    throw InvalidInput(quantity.where, fmt::format("{} is {} rad, more than a turn; if degrees are meant, write \"{} * "
+                                                   "pi/180\", if turns, \"{:.6g} * pi\"",
+                                                   what, value, value, value / std::numbers::pi));
   return value;
 }
 

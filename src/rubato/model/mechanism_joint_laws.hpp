@@ -73,9 +73,10 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
     elements.push_back(make_joint_table(joint.name, s, table_of(assembly, joint, part, value), when));
   if (joint.stiffness) {
     const bool is_length = joint.type == JointDescription::Type::strut;
-    const double rest = !joint.rest ? value
-                        : is_length ? assembly.at_least_zero(*joint.rest, part + ": rest")
-                                    : assembly.number(*joint.rest, part + ": rest");
+    const double rest = !joint.rest    ? value
+                        : is_length    ? assembly.at_least_zero(*joint.rest, part + ": rest")
+                        : s.is_angle() ? assembly.angle(*joint.rest, part + ": rest")
+                                       : assembly.number(*joint.rest, part + ": rest");
     elements.push_back(
         make_joint_spring(joint.name, s, assembly.at_least_zero(*joint.stiffness, part + ": stiffness"), rest));
   }

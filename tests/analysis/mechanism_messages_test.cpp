@@ -1,0 +1,250 @@
+#include <rubato/analysis/mechanism_failure.hpp>
+#include <rubato/core/error.hpp>
+
+#include <support/mechanism_study.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace rubato {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::MechanismStudy;
+using ::testing::Not;
+using testing::replaced;
+
+std::string refusal(const std::string& text) {
+  try {
+    const MechanismStudy ran(text);
+    return "ran: " + ran.report.message;
+  } catch (const InvalidInput& fault) {
+    return fault.what();
+  }
+}
+
+/// A cart that runs against a damped stop at 0.1 m with 1 m/s, and comes back.
+const std::string cart = R"(
+[[body]]
+name = "cart"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 0.0]
+velocity = [1.0, 0.0]
+[[joint]]
+name = "rail"
+type = "prismatic"
+between = ["ground", "cart"]
+at = [0.0, 0.0]
+axis = [1.0, 0.0]
+lock = { at = 0.1, kind = "stop", stiffness = 1000.0, damping = 10.0 }
+[[analysis]]
+name = "run"
+type = "transient"
+step = { tolerance = 1e-5 }
+duration = 0.4
+)";
+
+TEST(MechanismMessages, CallEventsInTheTableAsTheCommandDoes) {
+  const MechanismStudy ran(cart);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& events = ran.table("run.events");
+  EXPECT_THAT(events.layout.blocks[2].categories, ElementsAre("lets_go", "locks", "slips", "sticks"));
+  ASSERT_EQ(events.rows.size(), 2u);
+  EXPECT_EQ(events.rows[0][2], 1.0);
+  EXPECT_EQ(events.rows[1][2], 0.0);
+  ASSERT_EQ(ran.report.findings.size(), 2u);
+  EXPECT_THAT(ran.report.findings[0], HasSubstr("\"rail\" locks at t = 0.1 s"));
+  EXPECT_THAT(ran.report.findings[0], Not(HasSubstr("J")));  // its spring takes the energy, and gives it back
+  EXPECT_THAT(ran.report.findings[1], HasSubstr("J still in its spring, which its damper takes"));
+}
+
+TEST(MechanismMessages, TellThatStepsAlwaysEndWhereLocksChange) {
+  EXPECT_THAT(
+      refusal(replaced(cart, "{ tolerance = 1e-5 }", "{ tolerance = 1e-5, events = \"pass\" }")),
+      HasSubstr("events = \"pass\" is for structures: a lock or a joint that sticks changes what the step solves"));
+}
+
+// A jack of 1 m whose drive begins at 1.3 m sets the cart to 0.3 m, beyond the stop that was meant to end its way.
+TEST(MechanismMessages, WarnOfALockThatIsPassedBeforeTheStart) {
+  const std::string jack =
+      "[[joint]]\nname = \"jack\"\ntype = \"strut\"\nbetween = [\"ground\", \"cart\"]\nat = [-1.0, 0.0]\nto = [0.0, "
+      "0.0]\ndrive = \"1.3 + 0.1*t\"\n[[analysis]]";
+  const MechanismStudy ran(replaced(replaced(cart, "velocity = [1.0, 0.0]\n", ""), "[[analysis]]", jack));
+  ASSERT_FALSE(ran.report.warnings.empty());
+  const auto& warnings = ran.report.warnings;
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+    return warning.starts_with("\"rail\" starts 0.2 m beyond its lock at 0.1 m, which does not hold it there");
+  })) << warnings[0];
+  EXPECT_THAT(MechanismStudy(cart).report.warnings, IsEmpty());
+}
+
+/// A bar whose place does not go with its hinge.
+std::string misplaced(const std::string& more) {
+  return R"(
+[[body]]
+name = "bar"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 0.0]
+[[body]]
+name = "other"
+mass = 1.0
+inertia = 1.0
+position = [3.0, 0.0]
+[[joint]]
+name = "A"
+type = "distance"
+between = ["ground", "bar"]
+at = [0.0, -1.0]
+to = [0.0, 0.0]
+length = 1.01
+)" + more +
+         R"(
+[[analysis]]
+name = "run"
+type = "transient"
+step = 0.01
+duration = 0.02
+)";
+}
+
+TEST(MechanismMessages, TellLengthsInMetres) {
+  const MechanismStudy ran(misplaced(""));
+  ASSERT_FALSE(ran.report.warnings.empty());
+  EXPECT_THAT(ran.report.warnings[0], HasSubstr("they were moved, \"bar.y\" most, by 0.01 m"));
+  // Two links of other lengths between the same points.
+  const std::string twice =
+      "[[joint]]\nname = \"B\"\ntype = \"distance\"\nbetween = [\"ground\", \"bar\"]\nat = [0.0, -1.0]\nto = [0.0, "
+      "0.0]\nlength = 1.2\n";
+  EXPECT_THAT(refusal(misplaced(twice)), ::testing::ContainsRegex("stays apart by 0\\.[0-9]+ m"));
+}
+
+// Nothing holds the bob: there is no equilibrium under its weight. The analysis fails; that others run is the
+// command's.
+TEST(MechanismMessages, FailOneAnalysisWhoseStaticStartIsNotFound) {
+  const std::string falling = R"(
+[[body]]
+name = "bob"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 0.0]
+[[joint]]
+name = "rail"
+type = "prismatic"
+between = ["ground", "bob"]
+at = [0.0, 0.0]
+axis = [0.0, 1.0]
+[gravity]
+acceleration = [0.0, -9.81]
+[[analysis]]
+name = "run"
+)";
+  for (const std::string task : {"type = \"transient\"\ninitial = \"static\"\nstep = 0.01\nduration = 1.0\n",
+                                 "type = \"modes\"\nabout = \"static\"\n"}) {
+    const MechanismStudy ran(falling + task);
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::failed) << task;
+    EXPECT_THAT(ran.report.message, HasSubstr("no equilibrium was found")) << task;
+    EXPECT_EQ(ran.sink.tables.count("run"), 0u) << task;
+  }
+}
+
+TEST(MechanismMessages, AskWhetherDegreesWereMeantByARestOfNinety) {
+  const std::string hinge = R"(
+[[body]]
+name = "bar"
+mass = 1.0
+inertia = 1.0
+position = [0.5, 0.0]
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["ground", "bar"]
+at = [0.0, 0.0]
+stiffness = 10.0
+rest = 90
+[[analysis]]
+name = "modes"
+type = "modes"
+about = "static"
+)";
+  EXPECT_THAT(refusal(hinge),
+              HasSubstr("joint \"hinge\": rest is 90 rad, more than a turn; if degrees are meant, write "
+                        "\"90 * pi/180\", if turns, \"28.6479 * pi\""));
+  // A spring wound by three turns.
+  EXPECT_EQ(refusal(replaced(hinge, "rest = 90", "rest = \"6*pi\"")), "ran: ");
+}
+
+/// A strut that a drive shortens from 1 m by 1 m/s.
+std::string shortened(const std::string& step, double duration) {
+  return R"(
+[[body]]
+name = "bob"
+mass = 1.0
+inertia = 1.0
+position = [1.0, 0.0]
+[[joint]]
+name = "rail"
+type = "prismatic"
+between = ["ground", "bob"]
+at = [1.0, 0.0]
+axis = [1.0, 0.0]
+[[joint]]
+name = "jack"
+type = "strut"
+between = ["ground", "bob"]
+at = [0.0, 0.0]
+to = [1.0, 0.0]
+drive = "1 - t"
+[[analysis]]
+name = "run"
+type = "transient"
+step = )" +
+         step + "\nduration = " + std::to_string(duration) + "\n";
+}
+
+TEST(MechanismMessages, NameTheStrutWhoseEndsMeet) {
+  for (const std::string step : {"0.01", "{ tolerance = 1e-5 }"}) {
+    const MechanismStudy ran(shortened(step, 2.0));
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::failed) << step;
+    EXPECT_THAT(ran.report.message, HasSubstr("the ends of the strut \"jack\" meet: at length 0")) << step;
+  }
+}
+
+TEST(MechanismMessages, TellThatAToleranceLiesBelowWhatNewtonsMethodLeaves) {
+  const MechanismStudy ran(shortened("{ tolerance = 1e-13 }", 0.1));
+  EXPECT_EQ(ran.report.status, analysis::RunStatus::failed);
+  EXPECT_THAT(ran.report.message, HasSubstr("the tolerance 1e-13 is below 1e-09, where the error of a step is what "
+                                            "Newton's method leaves: take a larger one"));
+}
+
+TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
+  model::Mechanism m(2);
+  const Index bar = m.add_node("bar", {0.0, 0.0, 0.0});
+  m.add_mass(bar, 1.0, 1.0);
+  for (const char* name : {"nut", "bearing"}) {
+    model::Lock lock;
+    lock.name = name;
+    m.locks.push_back(lock);
+  }
+  const system::Mechanism mechanism(std::move(m));
+  integrate::MarchReport report;
+  report.step.outcome = integrate::StepOutcome::crawls;
+  report.failed_at = 2.0;
+  report.failed_step = 1e-9;
+  const std::vector<integrate::LockEvent> events{
+      {0.5, 0, true, 0.0, -1}, {1.0, 1, true, 0.0, -1}, {1.5, 0, false, 0.0, -1}};
+  const std::string told = analysis::failure_of(report, mechanism, mechanism.start(), {-1, events}, "");
+  EXPECT_THAT(told, HasSubstr("crawled: the last 2,000 steps were shorter than 1e-8 of the run; the last to change: "
+                              "\"nut\" (lets go at t = 1.5 s), \"bearing\" (locks at t = 1 s);"));
+  EXPECT_THAT(analysis::failure_of(report, mechanism, mechanism.start(), {}, ""), Not(HasSubstr("change")));
+}
+
+}  // namespace
+}  // namespace rubato
