@@ -249,7 +249,10 @@ class Marcher {
   void start_anew() {
     history_ = {};
     estimator_.start(base_);
-    if (!std::holds_alternative<FixedStep>(plan_.controller)) wanted_ = std::min(wanted_, first_step());
+    if (std::holds_alternative<FixedStep>(plan_.controller))
+      wanted_ = plan_.first > 0.0 ? plan_.first : wanted_;  // a transition that was hard to pass may have cut it
+    else
+      wanted_ = std::min(wanted_, first_step());
     ++report_.restarts;
   }
 

@@ -128,7 +128,8 @@ LockDescription read_lock(TomlReader& reader) {
 /// A joint that turns takes the radius at which it rubs.
 FrictionDescription read_friction(TomlReader& reader, JointDescription::Type type) {
   const bool is_screw = type == JointDescription::Type::screw;
-  const bool turns = is_screw || type == JointDescription::Type::revolute;
+  const bool turns =
+      is_screw || type == JointDescription::Type::revolute || type == JointDescription::Type::cylindrical;
   FrictionDescription friction;
   friction.where = reader.where();
   friction.coefficient = reader.quantity("coefficient");
@@ -148,7 +149,7 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
   }
   if (!turns && friction.radius)
     throw InvalidInput(friction.radius->where,
-                       fmt::format("{}: radius belongs to a revolute or screw joint", reader.what()));
+                       fmt::format("{}: radius belongs to a revolute, cylindrical or screw joint", reader.what()));
   reader.finish();
   return friction;
 }
@@ -156,8 +157,7 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
 /// What rubs in a joint that takes no friction can be built of joints that do.
 std::string instead_of(const std::string& key, const std::string& type) {
   if (key != "friction") return {};
-  const std::map<std::string, std::string> rows{{"cylindrical", "a revolute and a prismatic joint"},
-                                                {"spherical", "three revolute joints"},
+  const std::map<std::string, std::string> rows{{"spherical", "three revolute joints"},
                                                 {"universal", "two revolute joints"},
                                                 {"planar", "two prismatic joints and a revolute one"}};
   const auto row = rows.find(type);
@@ -181,7 +181,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
-      {"friction", of_one_coordinate},
+      {"friction", {"revolute", "prismatic", "cylindrical", "screw", "strut"}},
       {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;

@@ -101,8 +101,8 @@ CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescripti
   return law;
 }
 
-void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const FreeCoordinate& s, PressingRows pressing, double arm) {
+int take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                  const FreeCoordinate& s, PressingRows pressing, double arm) {
   const FrictionDescription& given = *joint.friction;
   if (joint.motion)
     throw InvalidInput(given.where,
@@ -125,7 +125,7 @@ void take_friction(MechanismAssembly& assembly, const JointDescription& joint, c
                        fmt::format("{}: friction: it holds nothing, and no reaction presses on what slides; "
                                    "give \"preload\" [N]",
                                    part));
-  assembly.mechanism.add_friction(std::move(friction));
+  return assembly.mechanism.add_friction(std::move(friction));
 }
 
 double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {

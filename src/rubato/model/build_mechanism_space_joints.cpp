@@ -110,6 +110,13 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
 }
 
+/// Of a cylindrical joint: along and around the axis together, against the slip of the pin's surface.
+void take_collar_friction(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built,
+                          const SpaceCoordinate& way, const SpaceCoordinate& angle) {
+  const int along = take_friction(assembly, joint, built.part, way, {0, 2}, 1.0);
+  assembly.mechanism.add_shared_friction(along, angle, rubbing_radius(assembly, joint, built.part));
+}
+
 double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
   if (!joint.lead) throw InvalidInput(joint.where, part + " lacks the key \"lead\": how far it goes in a turn [m]");
   const double lead = assembly.number(*joint.lead, part + ": lead");
@@ -200,6 +207,10 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
     take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical,
                     lead);
   if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic, lead);
+  if (joint.type == Type::cylindrical && joint.friction) {
+    const auto& coordinates = mechanism.space_coordinates;
+    take_collar_friction(assembly, joint, built, coordinates.back().s, coordinates[coordinates.size() - 2].s);
+  }
 }
 
 }  // namespace rubato::model

@@ -128,6 +128,17 @@ int Mechanism::add_friction(JointFriction friction) {
   return index;
 }
 
+int Mechanism::add_shared_friction(int leader, const FreeCoordinate& s, double arm) {
+  JointFriction second = frictions[static_cast<std::size_t>(leader)];
+  second.s = s;
+  second.coefficient *= arm / second.arm;
+  second.arm = arm;
+  second.partner = leader;
+  const int index = add_friction(std::move(second));
+  frictions[static_cast<std::size_t>(leader)].partner = index;
+  return index;
+}
+
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
                                     const TimeLaw& law) {
   elements.push_back(make_following_force(name, point, axis, law));

@@ -93,7 +93,7 @@ struct Mechanism {
   std::vector<TurnCounter> turn_counters;
   std::vector<Lock> locks;
   std::vector<PrescribedMotion> drives;
-  std::vector<JointFriction> frictions;
+  std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
   std::vector<NodeForce> forces;
   std::vector<TimeLaw> following_laws;  ///< of forces and moments that are elements, for when they are not smooth
   std::vector<numerics::TimeFormula> joint_formulas;  ///< laws of joints that switch with time, for when they do
@@ -138,6 +138,9 @@ struct Mechanism {
   int add_lock(Lock lock);
   /// Adds friction, with the constraint that lets it stick. @return its index
   int add_friction(JointFriction friction);
+  /// Adds a friction that shares its limit with another of the same joint: of the same coefficient, load and rows.
+  /// @param arm  of its slip velocity over the rate of s
+  int add_shared_friction(int leader, const FreeCoordinate& s, double arm);
   /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
   void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);

@@ -31,8 +31,9 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
 struct PressingRows {
   int first = 0, count = 0;
 };
-void take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                   const FreeCoordinate& s, PressingRows pressing, double arm);
+/// @return its index
+int take_friction(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                  const FreeCoordinate& s, PressingRows pressing, double arm);
 
 /// Of the pin or the thread that rubs [m]; 1 for what slides.
 double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part);

@@ -34,6 +34,7 @@ class MechanismEquations {
     double mass = 1.0, damping = 0.0, stiffness = 0.0;
     double constraint = 0.0;  ///< what E is a share of, over M; 0: the weight of mass
     bool friction = false;    ///< with the slopes of the friction that reactions make, beside G^T
+    bool wary = false;  ///< with secants of slip velocities (Weiszfeld 1937), which never overshoot, for their slopes
   };
   void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint);
   /// Makes what linearise() wrote that of all loads times a factor: forces, gravity, laws of joints.
@@ -82,6 +83,16 @@ class MechanismEquations {
   double friction_force(std::size_t friction, const Vector& multiplier) const;
   /// What friction can hold: mu N [N] or [N m].
   double friction_limit(std::size_t friction, const Vector& multiplier) const;
+  /// What is to be compared with it: the size of friction_force(), of two that share a limit that of both [N], [N m].
+  double friction_size(std::size_t friction, const Vector& multiplier) const;
+  /// Whether another friction, which shares its limit, leads this one.
+  bool is_led(std::size_t friction) const;
+  /// Of two that share a limit, with the index of the one that leads: their slip velocity [m/s].
+  Eigen::Vector2d slip_velocity(std::size_t friction) const;
+  /// Its derivative in time for given accelerations [n].
+  Eigen::Vector2d slip_acceleration(std::size_t friction, const Vector& acceleration);
+  /// Sets the floors of slip velocities for a step of length h from a state; goes there.
+  void set_slip_floors(const State& from, double h, State& to);
   double friction_rate(std::size_t friction) const;  ///< of its coordinate [rad/s] or [m/s]
   /// External forces by laws of t, and gravity [n].
   void external_force(Vector& out) const;
@@ -107,6 +118,15 @@ class MechanismEquations {
   struct FrictionPlace {
     std::vector<int> slot;  // of the forces on the places of the joint against its pressing rows [places x rows]
   };
+  struct Slip {
+    Eigen::Vector2d direction = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d slope = Eigen::Matrix2d::Zero();   // of it against the slip velocity [s/m]
+    Eigen::Matrix2d secant = Eigen::Matrix2d::Zero();  // of the direction to zero, across the floor
+  };
+  Slip slip(std::size_t leader) const;
+  /// The direction in which a friction slides, of two that share a limit its component.
+  double direction(std::size_t friction) const;
+  void linearise_slip(std::size_t leader, const Weights& weights, const Vector& multiplier);
   void add_preload_friction(Vector& force) const;
   void linearise_friction(const Weights& weights, const Vector& multiplier);
   double pressing(const model::JointFriction& friction, const Vector& multiplier) const;
@@ -129,7 +149,7 @@ class MechanismEquations {
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
-  std::vector<double> local_, matrix_, velocity_;
+  std::vector<double> local_, matrix_, velocity_, acceleration_;
   model::Motion motion_;
   numerics::KktFactor factor_;
   int factorisations_ = 0;

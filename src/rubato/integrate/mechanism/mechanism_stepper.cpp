@@ -23,7 +23,11 @@ class MechanismStepper final : public Stepper {
         constraint_(mechanism.constraint_count()),
         multiplier_(mechanism.constraint_count()) {
     for (const auto& element : mechanism.model().elements) is_smooth_ = is_smooth_ && !element->has_kinks();
-    for (const auto& friction : mechanism.model().frictions) is_smooth_ = is_smooth_ && !friction.follows_reaction();
+    for (const auto& friction : mechanism.model().frictions) {
+      is_smooth_ = is_smooth_ && !friction.follows_reaction();
+      has_slip_ = has_slip_ || friction.partner >= 0;
+    }
+    is_smooth_ = is_smooth_ && !has_slip_;
     tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
                                    : mechanism.reference() > 0.0 ? mechanism.reference()
                                                                  : std::sqrt(mechanism.mass().diagonal().sum()));
@@ -42,17 +46,20 @@ class MechanismStepper final : public Stepper {
     to.phase = from.phase;
     to.rubbing = from.rubbing;
     to.stuck_at = from.stuck_at;
+    equations_.set_slip_floors(from, h, to);
     to.slider_force = from.slider_force;
     to.multiplier = from.multiplier;
     predict(from, h);
     bool is_fresh = false;  // the factors are those of the last iterate
     bool needs_factors = true;
+    bool is_wary = false;
     double last = 0.0;
     for (int iteration = 0; iteration < plan_.most_iterations; ++iteration) {
       place(from, h, to);
       equations_.go_to(to, model::Side::left);
       if (needs_factors) {
-        equations_.linearise({1.0, mean * p_.gamma * h, scale_, 0.0, true}, to.multiplier, force_, constraint_);
+        equations_.linearise({1.0, mean * p_.gamma * h, scale_, 0.0, true, is_wary}, to.multiplier, force_,
+                             constraint_);
         is_fresh = true;
         if (!equations_.factorise()) return fault(StepOutcome::singular);
         needs_factors = false;
@@ -94,8 +101,9 @@ class MechanismStepper final : public Stepper {
         return is_held ? finish(from, h, is_placed, to) : fault(StepOutcome::singular);
       }
       if (iteration > 0) {
-        if (is_fresh && ratio > 2.0) return fault(StepOutcome::not_converged);
+        if (is_fresh && ratio > 2.0 && !has_slip_) return fault(StepOutcome::not_converged);
         needs_factors = ratio > 0.1;
+        is_wary = has_slip_ && !is_wary && ratio > 0.5;  // the direction of a slow slip turned too far
       }
       last = size;
     }
@@ -242,6 +250,7 @@ class MechanismStepper final : public Stepper {
   Vector travel_, force_, product_, constraint_, multiplier_;
   double tolerance_ = 0.0, scale_ = 0.0;
   bool is_smooth_ = true;  // the slopes of all forces
+  bool has_slip_ = false;  // of two frictions that share a limit
   system::State usual_for_;
   int usual_ = -1;  // rows that repeat others; -1: not known yet
 };

@@ -121,6 +121,7 @@ bool MechanismTimeline::restart(system::State& state) {
 
 void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
   for (std::size_t i = 0; i < old.size(); ++i) {
+    if (equations_.is_led(i)) continue;
     const bool rests = model::is_at_rest(state.rubbing[i]);
     if (model::is_at_rest(old[i]) != rests) events_.push_back({state.t, -1, rests, 0.0, static_cast<int>(i)});
   }
@@ -147,14 +148,16 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
   const std::vector<int> old = state.rubbing;
   const bool has_pulling = std::any_of(old.begin(), old.end(), pulls);
   for (std::size_t i = 0; i < old.size(); ++i) {
-    if (old[i] == model::friction_free || pulls(old[i])) continue;
+    if (old[i] == model::friction_free || pulls(old[i]) || equations_.is_led(i)) continue;
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     result.has_changed = true;
+    const bool is_pair = mechanism_.model().frictions[i].partner >= 0;
+    if (is_pair && old[i] != model::friction_sticks && turns_away(i, state)) continue;
     count_transition(row_.size() + i, state);
     if (old[i] != model::friction_sticks) {
       result.candidates[i] = 1;
-    } else if (has_pulling) {  // it may have held against what pulls, which can give way first
+    } else if (has_pulling || is_pair) {  // it may have held against what pulls, which can give way first
       for (std::size_t k = 0; k < old.size(); ++k) result.at_limit[k] = result.at_limit[k] || k == i || pulls(old[k]);
       result.candidates[i] = 1;
     } else {
@@ -171,6 +174,18 @@ double MechanismTimeline::balanced_friction(std::size_t i, const system::State& 
   return equations_.friction_force(i, balanced_.multiplier);
 }
 
+bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
+  constexpr double rest = 5.0 * model::slip_floor_share;  // what the floor may leave across
+  const auto first = static_cast<Index>(i), second = static_cast<Index>(mechanism_.model().frictions[i].partner);
+  equations_.go_to(state, model::Side::left);
+  const Eigen::Vector2d slip = equations_.slip_velocity(i);
+  const double before = std::hypot(state.stuck_at[first], state.stuck_at[second]) / model::slip_floor_share;
+  if (slip.norm() <= rest * before) return false;
+  state.stuck_at[first] = model::slip_floor_share * slip[0];
+  state.stuck_at[second] = model::slip_floor_share * slip[1];
+  return true;
+}
+
 model::Motion MechanismTimeline::motion_of(const system::State& state) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
   std::copy(state.acceleration.data(), state.acceleration.data() + state.acceleration.size(),
@@ -184,10 +199,18 @@ model::Motion MechanismTimeline::motion_of(const system::State& state) {
           state.stuck_at.data()};
 }
 
-GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state) {
+GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state, const Vector& floors) {
   if (state.rubbing[i] == model::friction_sticks) {
-    const double held = std::abs(balanced_friction(i, state));
-    return {equations_.friction_limit(i, balanced_.multiplier) - held, 0.0};
+    balanced_ = state;
+    if (!find_acceleration(equations_, balanced_, model::Side::left))
+      return {equations_.friction_limit(i, balanced_.multiplier), 0.0};
+    return {equations_.friction_limit(i, balanced_.multiplier) - equations_.friction_size(i, balanced_.multiplier),
+            0.0};
+  }
+  if (const int other = mechanism_.model().frictions[i].partner; other >= 0) {
+    const Eigen::Vector2d way = Eigen::Vector2d(floors[static_cast<Index>(i)], floors[other]).normalized();
+    equations_.go_to(state, model::Side::left);
+    return {way.dot(equations_.slip_velocity(i)), way.dot(equations_.slip_acceleration(i, state.acceleration))};
   }
   const auto& s = mechanism_.model().frictions[i].s;
   const double direction = model::sliding_direction(state.rubbing[i]);
@@ -198,7 +221,7 @@ GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State&
 bool MechanismTimeline::release(system::State& state) {
   for (std::size_t i = 0; i < row_.size(); ++i) {
     if (row_[i] < 0 || !is_watched(i, state) || state.phase[i] != model::lock_engaged) continue;
-    if (!(guard_at(i, state).value < 0.0)) continue;
+    if (!(guard_at(i, state, state.stuck_at).value < 0.0)) continue;
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
     const std::vector<int> old = state.rubbing;
@@ -212,7 +235,8 @@ bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state)
   if (lock < row_.size() && friction_of_[lock] >= 0 && state.phase[lock] == model::lock_open &&
       model::is_at_rest(state.rubbing[static_cast<std::size_t>(friction_of_[lock])]))
     return false;  // what sticks at its stop lies beyond it by round-off, and comes no nearer
-  if (lock >= row_.size() && pulls(state.rubbing[lock - row_.size()])) return false;
+  if (lock >= row_.size() && (pulls(state.rubbing[lock - row_.size()]) || equations_.is_led(lock - row_.size())))
+    return false;
   return lock >= row_.size() || !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
 }
 
@@ -221,8 +245,8 @@ bool MechanismTimeline::has_rate(std::size_t i, const system::State& from) const
   return row_[i] < 0 || from.phase[i] == model::lock_open;
 }
 
-GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state) {
-  if (i >= row_.size()) return friction_guard(i - row_.size(), state);
+GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state, const Vector& floors) {
+  if (i >= row_.size()) return friction_guard(i - row_.size(), state, floors);
   const model::Lock& lock = mechanism_.model().locks[i];
   const model::Motion motion = motion_of(state);
   const double s = lock.s.value(state.q.data()), rate = lock.s.rate(motion);
@@ -238,8 +262,8 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
   const double h = to.t - from.t;
   for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
     if (!is_watched(i, from)) continue;
-    const GuardValue a = guard_at(i, from);
-    const GuardValue b = guard_at(i, to);
+    const GuardValue a = guard_at(i, from, to.stuck_at);  // both ends by the floors of the step
+    const GuardValue b = guard_at(i, to, to.stuck_at);
     const bool has_slope = has_rate(i, from);
     const double slope0 = has_slope ? h * a.rate : b.value - a.value, slope1 = has_slope ? h * b.rate : slope0;
     // A coordinate may cross and come back within a step: the cubic is searched in parts.
@@ -267,8 +291,8 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
 
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const auto i = static_cast<std::size_t>(guard);
-  GuardValue value = guard_at(i, to);
-  if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from).value) / (to.t - from.t);
+  GuardValue value = guard_at(i, to, to.stuck_at);
+  if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from, to.stuck_at).value) / (to.t - from.t);
   return value;
 }
 

@@ -25,7 +25,8 @@ struct LockEvent {
 ///   at a stop with stiffness  sign (stiffness (s - at) + damping s')   its force would pull
 ///   at a stop without         sign times its multiplier
 ///   latched                   nothing any more
-///   slides                    s' in the direction in which it slides
+///   slides                    s' in the direction in which it slides; of two that share a limit their slip velocity
+///                             along that at the start of the step
 ///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
 ///   pulls while others hold   nothing: they are watched
 ///
@@ -61,7 +62,10 @@ class MechanismTimeline final : public Timeline {
   model::Motion motion_of(const system::State& state);
   /// The friction of a joint with the multipliers of equilibrium, which stay in balanced_.
   double balanced_friction(std::size_t friction, const system::State& state);
-  GuardValue friction_guard(std::size_t friction, const system::State& state);
+  /// @param floors  of slip velocities, as State::stuck_at has them
+  GuardValue friction_guard(std::size_t friction, const system::State& state, const Vector& floors);
+  /// Whether two frictions that share a limit go on across the way in which the step began; their floor is then new.
+  bool turns_away(std::size_t friction, system::State& state);
   /// Which frictions a step ended in: those that slide no more, and those that let go.
   Rubbing rubbing_after(const system::State& before, system::State& state);
   /// Counts a transition of a guard.
@@ -69,7 +73,7 @@ class MechanismTimeline final : public Timeline {
   /// Notes what friction did since `old`.
   void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
-  GuardValue guard_at(std::size_t lock, const system::State& state);
+  GuardValue guard_at(std::size_t lock, const system::State& state, const Vector& floors);
   bool has_rate(std::size_t guard, const system::State& from) const;
   bool is_watched(std::size_t lock, const system::State& state) const;
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.

@@ -34,6 +34,14 @@ inline bool is_at_rest(int phase) {
 ///   pulls    the force of one that slides, while others that stick hold s; until one of these lets go
 ///
 /// The multipliers are those of the same instant.
+///
+/// Where a joint slides in two directions at once (a cylindrical one along its axis and around it) two frictions share
+/// one limit. Their slip velocity u = (arm s') of both, [m/s], is that of the surfaces which rub, and
+///
+///   slides   the forces -u/|u| mu N arm on the two s; phase "slides up" of both, whatever the direction
+///   sticks   both s = where they stopped, until the norm of both multipliers over their arms reaches mu N
+///
+/// The direction needs a floor where u passes through zero within a step that is not accepted: see slip_floor().
 struct JointFriction {
   std::string name;  ///< of the joint
   FreeCoordinate s;
@@ -43,6 +51,8 @@ struct JointFriction {
   int first_pressing_row = 0;  ///< among its rows
   int pressing_rows = 0;       ///< so many of them press with the norm of their multipliers
   int sticking_joint = -1;     ///< the constraint that holds it
+  double arm = 1.0;            ///< of a slip velocity over the rate of s, 1 or of an angle the radius [m]
+  int partner = -1;            ///< the other of two that share a limit; the first of both leads
 
   bool follows_reaction() const { return pressing_rows > 0; }
 };
@@ -52,6 +62,16 @@ inline double sliding_direction(int phase) {
   if (phase == friction_slides_up || phase == friction_pulls_up) return 1.0;
   return phase == friction_slides_down || phase == friction_pulls_down ? -1.0 : 0.0;
 }
+
+/// While two frictions that share a limit slide, State::stuck_at holds of each a component of the floor w: of a slip
+/// velocity u what points along w counts as |w| at least,
+///
+///   direction = normalised(max(u.d, |w|) d + u - (u.d) d),   d = w/|w|
+///
+/// Of a step from a slip velocity u0 w is this share of it, in the direction of u0, so that what reaches less than it
+/// is the step in which it comes to rest; and from rest so much [m/s] that the direction is d.
+inline constexpr double slip_floor_share = 1e-2;
+inline constexpr double slip_floor_at_rest = 1e9;
 
 /// s = where it stopped while the joint sticks; nothing while it slides. Row "friction_moment" [N m] of an angle,
 /// "friction_force" [N] of a displacement.
