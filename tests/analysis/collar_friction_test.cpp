@@ -199,6 +199,22 @@ TEST(CollarFriction, SticksAndSlipsUnderALoadThatTurnsRound) {
   }
 }
 
+// Kept from turning by a guide that rubs too, with 3 N: both hold together up to 7 N.
+TEST(CollarFriction, HoldsTogetherWithAGuideBesideIt) {
+  const std::string guide =
+      "[[joint]]\nname = \"guide\"\ntype = \"prismatic\"\nbetween = [\"ground\", \"collar\"]\nat = [0.0, 0.0, 0.0]\n"
+      "axis = [0.0, 0.0, 1.0]\nfriction = { coefficient = 0.3, preload = 10.0 }\n";
+  for (const std::string& step : steps) {
+    const MechanismStudy ran(Collar{}.text() + guide + force("z", "10*sin(4*t)") + transient(step, 0.7));
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    ASSERT_EQ(ran.table("run.events").rows.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(ran.at(i, "run.events", "time"), std::asin(0.7) / 4.0, 1e-6);
+    EXPECT_GT(ran.last("run", "displacement", "rod"), 0.01);
+    EXPECT_NEAR(ran.last("run", "friction_force", "rod"), -limit, 1e-8);
+    EXPECT_NEAR(ran.last("run", "friction_force", "guide"), -3.0, 1e-8);
+  }
+}
+
 TEST(CollarFrictionFault, AsksForTheRadiusOfThePin) {
   EXPECT_THAT(verdict(replaced(Collar{}.text() + transient("0.01", 1.0), ", radius = 0.05", "")),
               HasSubstr("joint \"rod\": friction lacks the key \"radius\", of the pin [m]"));
