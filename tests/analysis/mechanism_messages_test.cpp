@@ -13,6 +13,8 @@
 namespace rubato {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -50,6 +52,18 @@ type = "transient"
 step = { tolerance = 1e-5 }
 duration = 0.4
 )";
+
+// Newton's method comes out of the wall by half a millimetre an iteration, and a step leads 40 mm into it.
+TEST(MechanismMessages, WarnOfEqualStepsThatBecameShorter) {
+  const std::string text = replaced(cart, "lock = { at = 0.1, kind = \"stop\", stiffness = 1000.0, damping = 10.0 }",
+                                    "force = \"-1e-3*exp(2000*displacement)\"");
+  const MechanismStudy ran(replaced(text, "{ tolerance = 1e-5 }", "0.04"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  EXPECT_THAT(ran.report.warnings,
+              Contains(AllOf(HasSubstr("of the equal steps"), HasSubstr("steps instead of 10; take a shorter step"))));
+  EXPECT_LT(ran.last("run", "velocity", "cart.x"), 0.0);
+  EXPECT_THAT(MechanismStudy(replaced(text, "{ tolerance = 1e-5 }", "1e-4")).report.warnings, IsEmpty());
+}
 
 TEST(MechanismMessages, CallEventsInTheTableAsTheCommandDoes) {
   const MechanismStudy ran(cart);
