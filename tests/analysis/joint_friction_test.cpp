@@ -153,6 +153,24 @@ TEST(JointFrictionInThePlane, IsTheCoefficientTimesTheReactionOfTheSameInstant) 
   EXPECT_GT(ran.last("run.energy", "friction_dissipated"), 0.1);
 }
 
+// A bar of J = 0.6 kg m2 that spins freely on a dry pin, whose reaction is m r sqrt(w^4 + a^2): with k = mu R m r/J =
+// 0.125 its acceleration is a = -c w^2, c = k/sqrt(1 - k^2), and it turns by ln(1 + c w0 t)/c.
+TEST(JointFrictionInThePlane, ThatFollowsAReactionIsOfSecondOrderWithProjectedVelocities) {
+  const double k = 0.125, c = k / std::sqrt(1.0 - k * k), speed = 6.0, duration = 1.0;
+  const auto error = [&](double step) {
+    const std::string bar =
+        bar_on_pin(in_plane, "friction = { coefficient = 0.25, normal_load = \"reaction\", radius = 0.3 }");
+    const MechanismStudy ran(replaced(bar, "mass = 2.0", "velocity = [0.0, 3.0]\nangular_velocity = 6.0\nmass = 2.0") +
+                             transient(fmt::format("{}", step), duration) + "project_velocities = true");
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    return ran.last("run", "angle", "pin") - std::log1p(c * speed * duration) / c;
+  };
+  const double coarse = error(0.02), middle = error(0.01), fine = error(0.005);
+  EXPECT_LT(std::abs(coarse), 0.01);
+  EXPECT_NEAR(coarse / middle, 4.0, 0.25);  // h^3: a tenth of it beside h^2 in the longest step
+  EXPECT_NEAR(middle / fine, 4.0, 0.25);
+}
+
 // A law that pushes against the motion with more than friction holds at rest: neither sticking nor sliding is left.
 TEST(JointFrictionInThePlane, NamesTheJointThatChangesWithoutEnd) {
   for (const char* step : {"{ tolerance = 1e-4 }", "0.01"}) {

@@ -150,8 +150,14 @@ void MechanismEquations::analyse() {
 
 double MechanismEquations::pressing(const model::JointFriction& friction, const Vector& multiplier) const {
   const Index row = mechanism_.first_row(friction.joint) + friction.first_pressing_row;
-  return friction.pressing_rows == 1 ? std::abs(multiplier[row])
-                                     : multiplier.segment(row, friction.pressing_rows).norm();
+  if (friction.pressing_rows == 1) return std::abs(reaction(row, multiplier));
+  double squared = 0.0;
+  for (Index r = 0; r < friction.pressing_rows; ++r) squared += std::pow(reaction(row + r, multiplier), 2);
+  return std::sqrt(squared);
+}
+
+void MechanismEquations::exceed_multipliers(const Vector& lag, double share) {
+  if (!mechanism_.model().frictions.empty()) excess_ = share * lag;
 }
 
 double MechanismEquations::friction_limit(std::size_t i, const Vector& multiplier) const {
@@ -306,8 +312,8 @@ void MechanismEquations::linearise_friction(const Weights& weights, const Vector
     const std::size_t rows = static_cast<std::size_t>(friction.pressing_rows);
     for (std::size_t k = 0; k < place.place.size(); ++k)
       for (std::size_t r = 0; r < rows; ++r)
-        values[friction_places_[i].slot[k * rows + r]] +=
-            direction * friction.coefficient * slope[place.local[k]] * multiplier[row + static_cast<Index>(r)] / size;
+        values[friction_places_[i].slot[k * rows + r]] += direction * friction.coefficient * slope[place.local[k]] *
+                                                          reaction(row + static_cast<Index>(r), multiplier) / size;
   }
 }
 

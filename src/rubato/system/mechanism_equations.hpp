@@ -79,6 +79,10 @@ class MechanismEquations {
   void force_of(model::Element::Role role, Vector& out);
   /// Whether friction that follows a reaction slides: the multipliers then make forces that are not linear in them.
   bool has_sliding_reactions() const;
+  /// From now on friction follows reactions that exceed the multipliers by a share of `lag`, which is those of a step
+  /// that projects its velocities.
+  /// @param lag  [c], or empty: nothing
+  void exceed_multipliers(const Vector& lag, double share);
   /// The friction of a joint on its coordinate [N] or [N m].
   double friction_force(std::size_t friction, const Vector& multiplier) const;
   /// What friction can hold: mu N [N] or [N m].
@@ -130,6 +134,10 @@ class MechanismEquations {
   void add_preload_friction(Vector& force) const;
   void linearise_friction(const Weights& weights, const Vector& multiplier);
   double pressing(const model::JointFriction& friction, const Vector& multiplier) const;
+  /// Of a pressing row.
+  double reaction(Index row, const Vector& multiplier) const {
+    return multiplier[row] + (excess_.size() > 0 ? excess_[row] : 0.0);
+  }
   ElementPlace place_of(const std::vector<Index>& places) const;
   void list_entries();
   void analyse();
@@ -150,6 +158,7 @@ class MechanismEquations {
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
   std::vector<double> local_, matrix_, velocity_, acceleration_;
+  Vector excess_;  // of the reactions that friction follows, over the multipliers [c]
   model::Motion motion_;
   numerics::KktFactor factor_;
   int factorisations_ = 0;

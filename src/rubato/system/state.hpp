@@ -18,8 +18,11 @@ struct State {
   /// What is reported is system::LocallyNonlinear::acceleration instead. Methods that need none leave it as it is.
   Vector auxiliary_acceleration;
   // Of mechanisms only:
-  Vector acceleration;       ///< that of equilibrium at t [n] [m/s2]
-  Vector multiplier;         ///< of the constraints [c] [N], [N m]
+  Vector acceleration;  ///< that of equilibrium at t [n] [m/s2]
+  Vector multiplier;    ///< of the constraints [c] [N], [N m]
+  /// By which the reactions exceed the multipliers of a step that ends with a projection of its velocities, over its
+  /// length [c] [N/s], [N m/s]; empty: nothing
+  Vector reaction_lag;
   std::vector<int> phase;    ///< of each lock (model::LockPhase): its history
   std::vector<int> rubbing;  ///< of each joint with friction (model::FrictionPhase): its history
   Vector stuck_at;           ///< where each of them last stuck [rad] or [m]

@@ -61,6 +61,7 @@ bool balance(system::MechanismEquations& equations, system::State& state, model:
     if (is_linear || (state.multiplier - last).norm() <= 1e-12 * state.multiplier.norm()) {
       state.auxiliary_acceleration = state.acceleration;
       state.contraction = 1.0;
+      state.reaction_lag.setZero(state.multiplier.size());
       return true;
     }
   }
