@@ -54,6 +54,26 @@ double period_limit(const system::Mechanism& mechanism) {
   return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest / 6.0 : HUGE_VAL;
 }
 
+/// @param remedies  what else than more rows helps
+void refuse_short_table(const model::TableLaw& table, double duration, const Location& where, const char* remedies) {
+  if (table.beyond != model::TableLaw::Beyond::error) return;
+  if (table.times.front() <= 0.0 && table.times.back() >= duration * (1.0 - 1e-12)) return;
+  throw InvalidInput(where,
+                     fmt::format("the table \"{}\" reaches from {} s to {} s, the analysis from 0 s to {} s; extend "
+                                 "it, or say beyond = {} where it is used",
+                                 table.source, table.times.front(), table.times.back(), duration, remedies));
+}
+
+void refuse_short_tables(const model::Mechanism& model, double duration, const Location& where) {
+  const auto check = [&](const auto& law, const char* remedies) {
+    if (const auto* table = std::get_if<model::TableLaw>(&law)) refuse_short_table(*table, duration, where, remedies);
+  };
+  constexpr const char* of_force = "\"zero\" or \"hold\"";
+  for (const auto& force : model.forces) check(force.law, of_force);
+  for (const auto& law : model.following_laws) check(law, of_force);
+  for (const auto& drive : model.drives) check(drive.law, "\"hold\"");
+}
+
 AutomaticStep fixed_step(double step, double duration) {
   AutomaticStep automatic;
   automatic.plan.controller = integrate::FixedStep{};
@@ -324,18 +344,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                                      transient.duration / step, step));
     transient.automatic = fixed_step(step, transient.duration);
   }
-  std::vector<const model::TableLaw*> tables;
-  for (const auto& force : mechanism.model().forces) tables.push_back(std::get_if<model::TableLaw>(&force.law));
-  for (const auto& law : mechanism.model().following_laws) tables.push_back(std::get_if<model::TableLaw>(&law));
-  for (const auto& drive : mechanism.model().drives) tables.push_back(std::get_if<model::TableLaw>(&drive.law));
-  for (const auto* table : tables) {
-    if (!table || table->beyond != model::TableLaw::Beyond::error) continue;
-    if (table->times.front() <= 0.0 && table->times.back() >= transient.duration * (1.0 - 1e-12)) continue;
-    throw InvalidInput(where,
-                       fmt::format("the table \"{}\" reaches from {} s to {} s, the analysis from 0 s to {} s; extend "
-                                   "it, or say beyond = \"zero\" or \"hold\" where it is used",
-                                   table->source, table->times.front(), table->times.back(), transient.duration));
-  }
+  refuse_short_tables(mechanism.model(), transient.duration, where);
   for (const auto& drive : mechanism.model().drives)
     if (const auto* formula = std::get_if<numerics::TimeFormula>(&drive.law))
       if (const auto jump = numerics::first_jump(*formula, 0, 0.0, transient.duration))
