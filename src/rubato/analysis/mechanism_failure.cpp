@@ -156,9 +156,8 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
     const std::string strut = collapsed_strut(mechanism, state);
     if (!strut.empty())
       return fmt::format(
-          "at t = {} s the ends of the strut \"{}\" meet: at length 0 its force has no direction; give it a lock at "
-          "its "
-          "shortest length, or ends that pass by each other",
+          "at t = {} s the ends of the strut \"{}\" meet: at length 0 its force has no direction; give it a lock "
+          "at its shortest length, or ends that pass by each other",
           report.failed_at, strut);
   }
   if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || is_stuck) {

@@ -20,8 +20,7 @@ class MechanismStepper final : public Stepper {
         travel_(mechanism.size()),
         force_(mechanism.size()),
         product_(mechanism.size()),
-        constraint_(mechanism.constraint_count()),
-        multiplier_(mechanism.constraint_count()) {
+        constraint_(mechanism.constraint_count()) {
     for (const auto& element : mechanism.model().elements) is_smooth_ = is_smooth_ && !element->has_kinks();
     for (const auto& friction : mechanism.model().frictions) {
       is_smooth_ = is_smooth_ && !friction.follows_reaction();
@@ -261,7 +260,7 @@ class MechanismStepper final : public Stepper {
   NewtonPlan plan_;
   const system::Mechanism& mechanism_;
   system::MechanismEquations equations_;
-  Vector travel_, force_, product_, constraint_, multiplier_;
+  Vector travel_, force_, product_, constraint_;
   double tolerance_ = 0.0, scale_ = 0.0;
   bool is_smooth_ = true;  // the slopes of all forces
   bool has_slip_ = false;  // of two frictions that share a limit
