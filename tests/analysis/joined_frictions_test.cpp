@@ -1,11 +1,10 @@
-#include <support/laid_studies.hpp>
+#include <support/laid_steps.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <tuple>
 
 // Several dry joints on one freedom. What each of them carries at rest nothing tells but this: they hold together until
 // the pull exceeds the sum of their limits. The rotor, I = 0.1 kg m2, turns in hinges "a" and "b" on one axis, with
@@ -14,8 +13,6 @@ namespace rubato {
 namespace {
 
 using std::numbers::pi;
-using testing::in_plane;
-using testing::in_space;
 using testing::Laid;
 using testing::MechanismStudy;
 using testing::transient;
@@ -34,23 +31,14 @@ std::string rotor(const Laid& laid, double spin, const std::string& moment) {
   return text + "[[force]]\non = \"rotor.rz\"\nexpression = \"" + moment + "\"\n" + about;
 }
 
-const std::string steps[] = {"0.01", "{ tolerance = 1e-4 }", "{ tolerance = 1e-4, controller = \"cardona_cassano\" }"};
+constexpr int kinds_of_steps = 3;
+std::string step_of(int kind) { return testing::step_of_kind(kind, "0.01", "1e-4"); }
 
-/// In the plane and in space, with equal steps and those of both controllers.
-class JoinedFrictions : public ::testing::TestWithParam<std::tuple<bool, int>> {
+class JoinedFrictions : public testing::LaidWithSteps {
  public:
-  static const Laid& laid() { return std::get<0>(GetParam()) ? in_space : in_plane; }
-  static std::string run(double duration) {
-    return transient(steps[static_cast<std::size_t>(std::get<1>(GetParam()))], duration);
-  }
+  static std::string run(double duration) { return LaidWithSteps::run(duration, "0.01", "1e-4"); }
 };
-std::string name_of_case(const ::testing::TestParamInfo<std::tuple<bool, int>>& info) {
-  const char* const names[] = {"equal_steps", "steps_of_its_own", "steps_of_the_paper"};
-  return std::string(std::get<0>(info.param) ? "in_space_" : "in_the_plane_") + names[std::get<1>(info.param)];
-}
-
-INSTANTIATE_TEST_SUITE_P(Laid, JoinedFrictions, ::testing::Combine(::testing::Bool(), ::testing::Values(0, 1, 2)),
-                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(Laid, JoinedFrictions, JoinedFrictions::all_of_them(), JoinedFrictions::name);
 
 /// A run with an event a step does not end, or has tens of thousands of rows.
 void expect_few_steps(const MechanismStudy& ran) {
@@ -191,8 +179,9 @@ expression = ")" +
 
 TEST(JoinedFrictionsOfAJack, HoldItUntilTheMomentExceedsThatOfThreadAndBearing) {
   const double limits[] = {Jack::lifting + Jack::bearing, Jack::lowering + Jack::bearing}, signs[] = {-1.0, 1.0};
-  for (const std::string& step : steps)
+  for (int kind = 0; kind < kinds_of_steps; ++kind)
     for (int i = 0; i < 2; ++i) {
+      const std::string step = step_of(kind);
       const MechanismStudy ran(Jack::text(fmt::format("{}*t", signs[i] * 0.1)) +
                                transient(step, 1.2 * limits[i] / 0.1));
       expect_few_steps(ran);
@@ -212,7 +201,8 @@ TEST(JoinedFrictionsOfAJack, StopItWhereTheMomentEndsAndHoldTheWeight) {
   const double slowing = (Jack::lifting + Jack::bearing) / sees;
   ASSERT_GT(rising, 1.0);
   const double stop = 0.1 * (1.0 + rising / slowing), angle = 0.005 * rising * (1.0 + rising / slowing);
-  for (const std::string& step : steps) {
+  for (int kind = 0; kind < kinds_of_steps; ++kind) {
+    const std::string step = step_of(kind);
     const MechanismStudy ran(Jack::text(fmt::format("t < 0.1 ? -{} : 0", moment)) + transient(step, 0.5));
     expect_few_steps(ran);
     ASSERT_EQ(ran.table("run.events").rows.size(), 2u) << step;

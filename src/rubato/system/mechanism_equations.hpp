@@ -98,6 +98,7 @@ class MechanismEquations {
   /// Sets the floors of slip velocities for a step of length h from a state; goes there.
   void set_slip_floors(const State& from, double h, State& to);
   double friction_rate(std::size_t friction) const;  ///< of its coordinate [rad/s] or [m/s]
+  double friction_acceleration(std::size_t friction, const Vector& acceleration);  ///< [rad/s^2] or [m/s^2]
   /// External forces by laws of t, and gravity [n].
   void external_force(Vector& out) const;
 

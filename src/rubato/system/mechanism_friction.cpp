@@ -131,6 +131,11 @@ double MechanismEquations::friction_rate(std::size_t i) const {
   return mechanism_.model().frictions[i].s.rate(motion_);
 }
 
+double MechanismEquations::friction_acceleration(std::size_t i, const Vector& acceleration) {
+  std::copy(acceleration.data(), acceleration.data() + acceleration.size(), acceleration_.data() + 1);
+  return mechanism_.model().frictions[i].s.second_rate(motion_, acceleration_.data() + 1);
+}
+
 bool MechanismEquations::has_sliding_reactions() const {
   const auto& frictions = mechanism_.model().frictions;
   for (std::size_t i = 0; i < frictions.size(); ++i)
@@ -169,10 +174,12 @@ void MechanismEquations::linearise_friction(const Weights& weights, const Vector
     friction.s.slope(motion_.q, slope);
     const Index row = mechanism_.first_row(friction.joint) + friction.first_pressing_row;
     const std::size_t rows = static_cast<std::size_t>(friction.pressing_rows);
-    for (std::size_t k = 0; k < place.place.size(); ++k)
-      for (std::size_t r = 0; r < rows; ++r)
-        values[friction_places_[i].slot[k * rows + r]] += direction * friction.coefficient * slope[place.local[k]] *
-                                                          reaction(row + static_cast<Index>(r), multiplier) / size;
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double part = reaction(row + static_cast<Index>(r), multiplier) / size;  // of one row 1 or -1, exactly
+      for (std::size_t k = 0; k < place.place.size(); ++k)
+        values[friction_places_[i].slot[k * rows + r]] +=
+            direction * friction.coefficient * slope[place.local[k]] * part;
+    }
   }
 }
 

@@ -1,8 +1,7 @@
+#include <rubato/integrate/mechanism/friction_choice.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
-#include <rubato/integrate/mechanism/held_frictions.hpp>
+#include <rubato/integrate/mechanism/friction_release.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -11,34 +10,9 @@ namespace rubato::integrate {
 namespace {
 
 using model::friction_free;
-using model::friction_pulls_down;
-using model::friction_pulls_up;
 using model::friction_slides_down;
 using model::friction_slides_up;
 using model::friction_sticks;
-
-/// The slip velocity of two frictions that share a limit, or the rate of one alone, in the direction in which it
-/// slides.
-double forward_rate(const system::MechanismEquations& equations, const system::State& state, std::size_t friction) {
-  const int partner = equations.mechanism().model().frictions[friction].partner;
-  if (partner < 0) return model::sliding_direction(state.rubbing[friction]) * equations.friction_rate(friction);
-  const Eigen::Vector2d floor(state.stuck_at[static_cast<Index>(friction)], state.stuck_at[partner]);
-  return floor.normalized().dot(equations.slip_velocity(friction));
-}
-
-/// Its derivative, from the difference at both ends of a short motion.
-double departure(system::MechanismEquations& equations, const system::State& state, std::size_t friction) {
-  constexpr double short_time = 1e-6;
-  system::State ahead = state;
-  ahead.t += short_time;
-  equations.mechanism().retract(state.q, short_time * state.v + (0.5 * short_time * short_time) * state.acceleration,
-                                ahead.q);
-  ahead.v += short_time * state.acceleration;
-  equations.go_to(ahead, model::Side::right);
-  const double after = forward_rate(equations, state, friction);
-  equations.go_to(state, model::Side::right);
-  return (after - forward_rate(equations, state, friction)) / short_time;
-}
 
 /// Whether a rigid lock of the same joint holds what rubs: what either of them carries nothing tells.
 bool is_locked(const model::Mechanism& model, const system::State& state, std::size_t friction) {
@@ -49,125 +23,92 @@ bool is_locked(const model::Mechanism& model, const system::State& state, std::s
   return false;
 }
 
-/// A phase for a friction, and for the one that shares its limit.
-void set_phase(const model::Mechanism& model, system::State& state, std::size_t friction, int phase) {
-  state.rubbing[friction] = phase;
-  if (model.frictions[friction].partner >= 0)
-    state.rubbing[static_cast<std::size_t>(model.frictions[friction].partner)] = phase;
-}
-
-void set_floor(const model::Mechanism& model, system::State& state, std::size_t friction,
-               const Eigen::Vector2d& floor) {
-  state.stuck_at[static_cast<Index>(friction)] = floor[0];
-  state.stuck_at[model.frictions[friction].partner] = floor[1];
-}
-
-/// Lets two frictions that share a limit go from rest, in the direction d in which they then slip: with the
-/// acceleration b that there would be without them and W, which friction in a direction d takes from it, (W + kappa 1)
-/// d = b, |d| = 1. At the limit itself nothing is left to accelerate, and d is the direction in which they are pulled.
-bool let_go(system::MechanismEquations& equations, system::State& state, std::size_t friction) {
-  constexpr double excess = 1e-6;  // below, what accelerates may be round-off
-  const model::Mechanism& model = equations.mechanism().model();
-  const auto other = static_cast<std::size_t>(model.frictions[friction].partner);
-  const Eigen::Vector2d held(equations.friction_force(friction, state.multiplier) / model.frictions[friction].arm,
-                             equations.friction_force(other, state.multiplier) / model.frictions[other].arm);
-  const double limit = equations.friction_limit(friction, state.multiplier);
-  const double size = equations.friction_size(friction, state.multiplier);
-  Eigen::Vector2d way = -held.normalized();
-  set_phase(model, state, friction, friction_slides_up);
-  const auto slip_along = [&](const Eigen::Vector2d& direction, Eigen::Vector2d& found) {
-    set_floor(model, state, friction, model::slip_floor_at_rest * direction);
-    if (!find_acceleration(equations, state, model::Side::right)) return false;
-    found = equations.slip_acceleration(friction, state.acceleration);
-    return true;
-  };
-  Eigen::Vector2d found, first, second, back;
-  if (size > (1.0 + excess) * limit) {
-    if (!slip_along({1.0, 0.0}, first) || !slip_along({0.0, 1.0}, second) || !slip_along({-1.0, 0.0}, back))
-      return false;
-    const Eigen::Vector2d free = 0.5 * (first + back);
-    Eigen::Matrix2d taken;
-    taken << free - first, free - second;
-    const auto at = [&](double kappa) -> Eigen::Vector2d {
-      return (taken + kappa * Eigen::Matrix2d::Identity()).inverse() * free;
-    };
-    double low = 0.0, high = free.norm();
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (at(middle).norm() > 1.0 ? low : high) = middle;
-    }
-    if (at(high).allFinite()) way = at(high).normalized();
-  }
-  return slip_along(way, found);
-}
-
-/// What may stick, by the candidates; the phases and accelerations of all become those of Coulomb's law.
-bool decide(system::MechanismEquations& equations, system::State& state, std::vector<char>& candidates,
-            const std::vector<char>& at_limit) {
-  const auto& mechanism = equations.mechanism();
-  const auto& frictions = mechanism.model().frictions;
-  std::vector<char> is_open(frictions.size(), 0);  // may stick or slide as it turns out
-  for (std::size_t i = 0; i < frictions.size(); ++i) {
+/// Leaves out what a rigid lock holds; what one held until now is a candidate.
+void leave_out_locked(const system::MechanismEquations& equations, system::State& state,
+                      std::vector<char>& candidates) {
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (equations.is_led(i)) continue;
     const bool has_been_free = state.rubbing[i] == friction_free;
-    if (is_locked(mechanism.model(), state, i)) {
-      state.rubbing[i] = friction_free;
-      candidates[i] = 0;
-      continue;
-    }
-    candidates[i] = candidates[i] || has_been_free;
-    if (candidates[i]) {
-      set_phase(mechanism.model(), state, i, friction_sticks);
-      state.stuck_at[static_cast<Index>(i)] = frictions[i].s.value(state.q.data());
-      if (const int other = frictions[i].partner; other >= 0)
-        state.stuck_at[other] = frictions[static_cast<std::size_t>(other)].s.value(state.q.data());
-    }
+    const bool is_left_out = is_locked(equations.mechanism().model(), state, i);
+    if (is_left_out) state.rubbing[i] = friction_free;
+    candidates[i] = !is_left_out && (candidates[i] || has_been_free);
+  }
+}
+
+/// What may stick, by the candidates; the phases and accelerations of all become those of Coulomb's law. One by one:
+/// of those that exceed their limit the worst goes first.
+bool decide(system::MechanismEquations& equations, system::State& state, const std::vector<char>& candidates,
+            const std::vector<char>& at_limit) {
+  const auto& model = equations.mechanism().model();
+  const std::size_t count = candidates.size();
+  std::vector<char> is_open(count, 0);  // may stick or slide as it turns out
+  for (std::size_t i = 0; i < count; ++i) {
+    if (equations.is_led(i)) continue;
+    if (candidates[i]) stick_here(model, state, i);
     is_open[i] = state.rubbing[i] == friction_sticks;
   }
   if (!find_acceleration(equations, state, model::Side::right)) return false;
-  const auto most_changes = 4 * frictions.size() + 4;
+  const auto most_changes = 4 * count + 4;
   for (std::size_t change = 0; change < most_changes; ++change) {
     equations.go_to(state, model::Side::right);
-    std::size_t worst = frictions.size();
+    std::size_t worst = count;
     double largest = -HUGE_VAL;
-    for (std::size_t i = 0; i < frictions.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       if (state.rubbing[i] != friction_sticks || equations.is_led(i)) continue;
-      const double held = equations.friction_size(i, state.multiplier);
-      const double excess = held - equations.friction_limit(i, state.multiplier);
-      const double round_off = (at_limit[i] ? -1e-9 : 1e-9) * held;
-      if (!(excess <= round_off) && !(excess <= largest)) {
-        largest = excess;
-        worst = i;
-      }
+      const double excess = excess_of_limit(equations, state, i, at_limit[i]);
+      if (excess <= 0.0 || excess <= largest) continue;
+      largest = excess;
+      worst = i;
     }
-    if (worst < frictions.size() && frictions[worst].partner >= 0) {
+    if (worst < count) {
       if (!let_go(equations, state, worst)) return false;
       continue;
     }
-    if (worst < frictions.size()) {
-      const double force = equations.friction_force(worst, state.multiplier);
-      state.rubbing[worst] = force < 0.0 ? friction_slides_up : friction_slides_down;
-      if (!find_acceleration(equations, state, model::Side::right)) return false;
-      continue;
-    }
-    bool holds_another = false;
-    const double size = state.acceleration.size() > 0 ? state.acceleration.cwiseAbs().maxCoeff() : 0.0;
-    for (std::size_t i = 0; i < frictions.size(); ++i) {
-      if (!is_open[i] || state.rubbing[i] == friction_sticks) continue;
-      if (!(departure(equations, state, i) < -1e-6 * size)) continue;
-      set_phase(mechanism.model(), state, i, friction_sticks);
-      if (const int other = frictions[i].partner; other >= 0) {
-        state.stuck_at[static_cast<Index>(i)] = frictions[i].s.value(state.q.data());
-        state.stuck_at[other] = frictions[static_cast<std::size_t>(other)].s.value(state.q.data());
-      }
-      is_open[i] = 0;  // once
-      holds_another = true;
-      if (!find_acceleration(equations, state, model::Side::right)) return false;
-      break;
-    }
-    if (!holds_another) break;
+    std::size_t turned = 0;
+    while (turned < count && !(is_open[turned] && goes_backward(equations, state, turned))) ++turned;
+    if (turned == count) break;
+    stick_here(model, state, turned);
+    is_open[turned] = 0;  // once
+    if (!find_acceleration(equations, state, model::Side::right)) return false;
   }
   return true;
+}
+
+/// Whether the friction of one that rests may change the limit of another.
+bool may_change_each_other(const model::Mechanism& model, const std::vector<char>& rests) {
+  bool follows = false;
+  for (std::size_t i = 0; i < rests.size(); ++i)
+    follows = follows || (rests[i] && model.frictions[i].follows_reaction());
+  return follows && std::count(rests.begin(), rests.end(), 1) > 1;
+}
+
+/// The same until nothing that slid turns out to be held by others; it then becomes a candidate, and may pull.
+bool decide_with_held(system::MechanismEquations& equations, system::State& state, std::vector<char>& candidates,
+                      const std::vector<char>& at_limit) {
+  const std::size_t count = candidates.size();
+  for (std::size_t round = 0; round <= count; ++round) {
+    if (!decide(equations, state, candidates, at_limit)) return false;
+    const std::vector<char> last = candidates;
+    if (!let_held_pull(equations, state, candidates)) return false;
+    if (candidates == last) break;
+  }
+  return true;
+}
+
+/// Joints that rub by themselves are decided one by one; of others all ways are tried.
+bool settle_phases(system::MechanismEquations& equations, system::State& state, std::vector<char>& candidates,
+                   const std::vector<char>& at_limit, const std::vector<char>& rests) {
+  const system::State first = state;
+  const bool is_coupled = may_change_each_other(equations.mechanism().model(), rests);
+  if (is_coupled && choose_frictions(equations, state, rests, at_limit)) return true;
+  state = first;
+  const bool is_decided = decide_with_held(equations, state, candidates, at_limit);
+  if (is_coupled || (is_decided && agree_with_coulomb(equations, state, rests, at_limit))) return is_decided;
+  const system::State decided = state;
+  state = first;
+  if (choose_frictions(equations, state, rests, at_limit)) return true;
+  state = decided;
+  return is_decided;
 }
 
 }  // namespace
@@ -176,8 +117,7 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
                      std::vector<char> at_limit) {
   const std::size_t count = candidates.size();
   at_limit.resize(count, 0);
-  for (std::size_t i = 0; i < count; ++i)
-    candidates[i] = candidates[i] || state.rubbing[i] == friction_pulls_up || state.rubbing[i] == friction_pulls_down;
+  for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || pulls(state.rubbing[i]);
   bool lets_go = false;  // of two that share a limit: what is left of velocities would be their direction
   for (std::size_t i = 0; i < count; ++i)
     lets_go = lets_go || (at_limit[i] && state.rubbing[i] == friction_sticks &&
@@ -187,21 +127,10 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
     if (!still.is_consistent) return false;
     state = still.state;
   }
-  for (std::size_t round = 0; round <= count; ++round) {
-    if (!decide(equations, state, candidates, at_limit)) return false;
-    const std::vector<char> is_held = held_frictions(equations, state);
-    if (is_held.size() != count) return false;
-    bool is_news = false;  // what slid until now stands, since another holds it
-    for (std::size_t i = 0; i < count; ++i) {
-      const int other = equations.mechanism().model().frictions[i].partner;
-      if (equations.is_led(i) || !is_held[i] || (other >= 0 && !is_held[static_cast<std::size_t>(other)])) continue;
-      is_news = is_news || !candidates[i];
-      candidates[i] = 1;
-      set_phase(equations.mechanism().model(), state, i,
-                state.rubbing[i] == friction_slides_up ? friction_pulls_up : friction_pulls_down);
-    }
-    if (!is_news) break;
-  }
+  leave_out_locked(equations, state, candidates);
+  const std::vector<char> rests = resting_frictions(equations, state, candidates);
+  if (!settle_phases(equations, state, candidates, at_limit, rests)) return false;
+  for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || rests[i];
   bool holds_new = false;
   for (std::size_t i = 0; i < count; ++i)
     holds_new = holds_new || (candidates[i] && state.rubbing[i] == friction_sticks);
@@ -221,8 +150,8 @@ bool settle_new_velocities(system::MechanismEquations& equations, system::State&
     if (frictions[i].partner >= 0) {
       const Eigen::Vector2d slip = equations.slip_velocity(i);
       candidates[i] = slip.norm() <= 1e-10 * fastest;
-      set_phase(equations.mechanism().model(), state, i, friction_slides_up);
-      set_floor(equations.mechanism().model(), state, i, model::slip_floor_share * slip);
+      set_friction_phase(equations.mechanism().model(), state, i, friction_slides_up);
+      set_slip_floor(equations.mechanism().model(), state, i, model::slip_floor_share * slip);
       continue;
     }
     const double rate = equations.friction_rate(i);

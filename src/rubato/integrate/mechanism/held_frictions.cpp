@@ -17,14 +17,10 @@ Vector slope_of(const model::FreeCoordinate& s, const system::State& state) {
   return all;
 }
 
-struct Mobility {
-  double mobility = 0.0;  ///< w
-  bool is_driven = false;
-};
+}  // namespace
 
-/// Of the frictions asked for, with the phases of the state; false where the matrix cannot be factorised.
-bool find_mobilities(system::MechanismEquations& equations, const system::State& state,
-                     const std::vector<std::size_t>& frictions, std::vector<Mobility>& found) {
+bool find_friction_mobilities(system::MechanismEquations& equations, const system::State& state,
+                              const std::vector<std::size_t>& frictions, std::vector<FrictionMobility>& found) {
   constexpr double driven = 1e-8;  // of a radian or metre for one of the drive
   const auto& mechanism = equations.mechanism();
   const auto& model = mechanism.model();
@@ -48,15 +44,13 @@ bool find_mobilities(system::MechanismEquations& equations, const system::State&
       motion += correction;
       impulse += rate;
     }
-    Mobility of{slope.dot(motion), false};
+    FrictionMobility of{slope, motion, false};
     for (const auto& drive : model.drives)  // by reciprocity: what the drive would move of s
       of.is_driven = of.is_driven || !(std::abs(impulse[mechanism.first_row(drive.joint)]) <= driven);
     found.push_back(of);
   }
   return true;
 }
-
-}  // namespace
 
 std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state) {
   // Axes that lie in one to four digits count as one: rows at an angle leave its square.
@@ -78,15 +72,15 @@ std::vector<char> held_frictions(system::MechanismEquations& equations, const sy
     open.phase[lock] = model::lock_open;
   }
   if (!holds || sliding.empty()) return is_held;
-  std::vector<Mobility> now, without;
-  if (!find_mobilities(equations, state, sliding, now) || !find_mobilities(equations, open, sliding, without))
+  std::vector<FrictionMobility> now, without;
+  if (!find_friction_mobilities(equations, state, sliding, now) ||
+      !find_friction_mobilities(equations, open, sliding, without))
     return {};
   const Vector masses = equations.mechanism().mass().diagonal();
   for (std::size_t i = 0; i < sliding.size(); ++i) {
-    const Vector slope = slope_of(model.frictions[sliding[i]].s, state);
-    const double alone = slope.cwiseAbs2().cwiseQuotient(masses).sum();
-    const double least = std::max(same_axis * without[i].mobility, round_off * alone);
-    is_held[sliding[i]] = !now[i].is_driven && now[i].mobility <= least;
+    const double alone = now[i].slope.cwiseAbs2().cwiseQuotient(masses).sum();
+    const double least = std::max(same_axis * without[i].of(without[i]), round_off * alone);
+    is_held[sliding[i]] = !now[i].is_driven && now[i].of(now[i]) <= least;
   }
   return is_held;
 }

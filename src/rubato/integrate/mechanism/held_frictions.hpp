@@ -6,13 +6,22 @@
 
 namespace rubato::integrate {
 
-/// Which of the frictions that slide cannot move: other joints that stick, or rigid locks, hold their coordinates.
-///
-/// A unit impulse along the coordinate s of a friction changes its rate by the mobility
-///
-///   w = (ds/dq) dv,   M dv + G^T impulse = (ds/dq)^T,   G dv = 0
-///
-/// with what sticks and locks now among the rows of G. It is held where that is no part of the mobility without them.
+/// What a unit impulse along the coordinate s of a friction does,  M dv + G^T impulse = (ds/dq)^T,  G dv = 0,  with
+/// what sticks and locks among the rows of G.
+struct FrictionMobility {
+  Vector slope;            ///< ds/dq [n]
+  Vector motion;           ///< dv [n]
+  bool is_driven = false;  ///< a drive moves s
+  /// The change of the rate of another, or of its own: the mobility w = (ds/dq) dv.
+  double of(const FrictionMobility& other) const { return other.slope.dot(motion); }
+};
+
+/// Of the frictions asked for, with the phases of a state; false where the matrix cannot be factorised.
+bool find_friction_mobilities(system::MechanismEquations& equations, const system::State& state,
+                              const std::vector<std::size_t>& frictions, std::vector<FrictionMobility>& found);
+
+/// Which of the frictions that slide cannot move: other joints that stick, or rigid locks, hold their coordinates. That
+/// is where their mobility is no part of that without them.
 /// What a drive moves is not held: its rate is the drive's.
 /// @return one for each friction of the model, or nothing where a matrix cannot be factorised
 std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state);

@@ -55,13 +55,16 @@ bool balance(system::MechanismEquations& equations, system::State& state, model:
     equations.constraint_rate(Vector::Zero(force.size()), explicit_rate);
     rate = -(rate - explicit_rate + wanted);
     equations.solve(force, rate);
-    state.acceleration += force;
-    state.multiplier += rate;
-    if (!state.acceleration.allFinite() || !state.multiplier.allFinite()) return false;
-    if (is_linear || (state.multiplier - last).norm() <= 1e-12 * state.multiplier.norm()) {
+    if (!force.allFinite() || !rate.allFinite()) return false;
+    // What is left of the equations tells the end: of a reaction that turned round the correction is by the old slope,
+    // and could lead back. One in every row, as of a share, stays where the slopes no longer change.
+    const double size = state.multiplier.norm();
+    if (is_linear || rate.norm() <= 1e-8 * size || (state.multiplier - last).norm() <= 1e-12 * size) {
+      state.acceleration += force;
+      state.multiplier += rate;
       state.auxiliary_acceleration = state.acceleration;
       state.contraction = 1.0;
-      state.reaction_lag.setZero(state.multiplier.size());
+      state.reaction_lag.resize(0);
       return true;
     }
   }
@@ -85,8 +88,8 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   ConsistentStart result;
   result.state = std::move(given);
   system::State& state = result.state;
-  state.multiplier.resize(c);
-  state.multiplier.setZero();
+  if (state.multiplier.size() != c)
+    state.multiplier = Vector::Zero(c);  // else: where friction that follows them begins
   const Vector first = state.q, first_velocity = state.v;
   Vector force(n), constraint(c), moved(n), product(n), other = state.q;
 

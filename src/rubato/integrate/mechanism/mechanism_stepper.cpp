@@ -23,10 +23,10 @@ class MechanismStepper final : public Stepper {
         constraint_(mechanism.constraint_count()) {
     for (const auto& element : mechanism.model().elements) is_smooth_ = is_smooth_ && !element->has_kinks();
     for (const auto& friction : mechanism.model().frictions) {
-      is_smooth_ = is_smooth_ && !friction.follows_reaction();
+      has_followed_reactions_ = has_followed_reactions_ || friction.follows_reaction();
       has_slip_ = has_slip_ || friction.partner >= 0;
     }
-    is_smooth_ = is_smooth_ && !has_slip_;
+    is_smooth_ = is_smooth_ && !has_followed_reactions_ && !has_slip_;
     tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
                                    : mechanism.reference() > 0.0 ? mechanism.reference()
                                                                  : std::sqrt(mechanism.mass().diagonal().sum()));
@@ -90,7 +90,10 @@ class MechanismStepper final : public Stepper {
         to.contraction = safety * ratio;
         to.correction = last;
       }
-      const double before = ratio < 1.0 ? size / (1.0 - ratio) : HUGE_VAL;  // the error without this correction
+      const bool is_noise = iteration > 0 && size <= noise * tolerance_;
+      const double before = ratio < 1.0 ? size / (1.0 - ratio)  // the error without this correction
+                            : is_noise  ? size
+                                        : HUGE_VAL;
       const bool is_placed = iteration > 0 && before <= negligible * tolerance_;
       if (!is_placed) {
         mechanism_.to_travel(travel_, force_);
@@ -178,7 +181,7 @@ class MechanismStepper final : public Stepper {
     if (plan_.projects_velocities && constraint_.size() > 0) {
       equations_.exceed_multipliers(from.reaction_lag, 0.0);
       if (!project(is_placed, to)) return fault(StepOutcome::singular);
-      to.reaction_lag = (1.0 / (h * h)) * constraint_;
+      if (has_followed_reactions_) to.reaction_lag = (1.0 / (h * h)) * constraint_;
     }
     if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite()) return {};
     return fault(StepOutcome::not_finite);
@@ -254,6 +257,7 @@ class MechanismStepper final : public Stepper {
   static constexpr double negligible = 1e-2;  // of the tolerance
   static constexpr double safety = 10.0;      // on the measured share that a first correction leaves
   static constexpr double growth = 1.2;       // of that share in each step that relies on it
+  static constexpr double noise = 1e-4;       // of the tolerance: corrections that need not shrink
   static constexpr double foreign = 1e-2;     // of the momentum of a projection: what is no impulse of constraints
 
   GeneralizedAlpha p_;
@@ -262,8 +266,9 @@ class MechanismStepper final : public Stepper {
   system::MechanismEquations equations_;
   Vector travel_, force_, product_, constraint_;
   double tolerance_ = 0.0, scale_ = 0.0;
-  bool is_smooth_ = true;  // the slopes of all forces
-  bool has_slip_ = false;  // of two frictions that share a limit
+  bool is_smooth_ = true;                // the slopes of all forces
+  bool has_followed_reactions_ = false;  // by friction
+  bool has_slip_ = false;                // of two frictions that share a limit
   system::State usual_for_;
   int usual_ = -1;  // rows that repeat others; -1: not known yet
 };

@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/friction_phases.hpp>
+#include <rubato/integrate/mechanism/friction_release.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 #include <rubato/model/time_kinks.hpp>
@@ -23,8 +24,6 @@ double cubic(double x, double y0, double slope0, double y1, double slope1) {
   const double rest = 1.0 - x;
   return rest * rest * ((1.0 + 2.0 * x) * y0 + x * slope0) + x * x * ((1.0 + 2.0 * rest) * y1 - rest * slope1);
 }
-
-bool pulls(int phase) { return phase == model::friction_pulls_up || phase == model::friction_pulls_down; }
 
 }  // namespace
 
@@ -119,14 +118,6 @@ bool MechanismTimeline::restart(system::State& state) {
   return goes_on && release(state);
 }
 
-void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
-  for (std::size_t i = 0; i < old.size(); ++i) {
-    if (equations_.is_led(i)) continue;
-    const bool rests = model::is_at_rest(state.rubbing[i]);
-    if (model::is_at_rest(old[i]) != rests) events_.push_back({state.t, -1, rests, 0.0, static_cast<int>(i)});
-  }
-}
-
 void MechanismTimeline::count_transition(std::size_t guard, const system::State& state) {
   constexpr int most = 100;
   constexpr double window = 1e9;  // over the resolution, 1e-12 of the run
@@ -141,51 +132,6 @@ void MechanismTimeline::count_transition(std::size_t guard, const system::State&
   if (++past.count > most) chattering_ = static_cast<Index>(guard);
 }
 
-MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
-  Rubbing result;
-  result.candidates.assign(state.rubbing.size(), 0);
-  result.at_limit = result.candidates;
-  const std::vector<int> old = state.rubbing;
-  const bool has_pulling = std::any_of(old.begin(), old.end(), pulls);
-  for (std::size_t i = 0; i < old.size(); ++i) {
-    if (old[i] == model::friction_free || pulls(old[i]) || equations_.is_led(i)) continue;
-    const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
-    if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
-    result.has_changed = true;
-    const bool is_pair = mechanism_.model().frictions[i].partner >= 0;
-    if (is_pair && old[i] != model::friction_sticks && turns_away(i, state)) continue;
-    count_transition(row_.size() + i, state);
-    if (old[i] != model::friction_sticks) {
-      result.candidates[i] = 1;
-    } else if (has_pulling || is_pair) {  // it may have held against what pulls, which can give way first
-      for (std::size_t k = 0; k < old.size(); ++k) result.at_limit[k] = result.at_limit[k] || k == i || pulls(old[k]);
-      result.candidates[i] = 1;
-    } else {
-      const double force = balanced_friction(i, state);
-      state.rubbing[i] = force < 0.0 ? model::friction_slides_up : model::friction_slides_down;
-    }
-  }
-  return result;
-}
-
-double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
-  balanced_ = state;
-  if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
-  return equations_.friction_force(i, balanced_.multiplier);
-}
-
-bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
-  constexpr double rest = 5.0 * model::slip_floor_share;  // what the floor may leave across
-  const auto first = static_cast<Index>(i), second = static_cast<Index>(mechanism_.model().frictions[i].partner);
-  equations_.go_to(state, model::Side::left);
-  const Eigen::Vector2d slip = equations_.slip_velocity(i);
-  const double before = std::hypot(state.stuck_at[first], state.stuck_at[second]) / model::slip_floor_share;
-  if (slip.norm() <= rest * before) return false;
-  state.stuck_at[first] = model::slip_floor_share * slip[0];
-  state.stuck_at[second] = model::slip_floor_share * slip[1];
-  return true;
-}
-
 model::Motion MechanismTimeline::motion_of(const system::State& state) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
   std::copy(state.acceleration.data(), state.acceleration.data() + state.acceleration.size(),
@@ -197,25 +143,6 @@ model::Motion MechanismTimeline::motion_of(const system::State& state) {
           state.phase.data(),
           state.rubbing.data(),
           state.stuck_at.data()};
-}
-
-GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state, const Vector& floors) {
-  if (state.rubbing[i] == model::friction_sticks) {
-    balanced_ = state;
-    if (!find_acceleration(equations_, balanced_, model::Side::left))
-      return {equations_.friction_limit(i, balanced_.multiplier), 0.0};
-    return {equations_.friction_limit(i, balanced_.multiplier) - equations_.friction_size(i, balanced_.multiplier),
-            0.0};
-  }
-  if (const int other = mechanism_.model().frictions[i].partner; other >= 0) {
-    const Eigen::Vector2d way = Eigen::Vector2d(floors[static_cast<Index>(i)], floors[other]).normalized();
-    equations_.go_to(state, model::Side::left);
-    return {way.dot(equations_.slip_velocity(i)), way.dot(equations_.slip_acceleration(i, state.acceleration))};
-  }
-  const auto& s = mechanism_.model().frictions[i].s;
-  const double direction = model::sliding_direction(state.rubbing[i]);
-  const model::Motion motion = motion_of(state);
-  return {direction * s.rate(motion), direction * s.second_rate(motion, padded_acceleration_.data() + 1)};
 }
 
 bool MechanismTimeline::release(system::State& state) {
@@ -257,15 +184,35 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
           lock.sign * (lock.stiffness * rate + lock.damping * second_rate)};
 }
 
+const system::State& MechanismTimeline::halfway(const system::State& from, const system::State& to) {
+  if (has_halfway_) return halfway_;
+  has_halfway_ = true;
+  const double h = to.t - from.t;
+  halfway_ = to;
+  halfway_.t = from.t + 0.5 * h;
+  mechanism_.difference(from.q, to.q, left_);
+  mechanism_.retract(from.q, 0.5 * left_ + (0.125 * h) * (from.v - to.v), halfway_.q);
+  halfway_.v = 0.5 * (from.v + to.v) + (0.125 * h) * (from.acceleration - to.acceleration);
+  return halfway_;
+}
+
 Crossing MechanismTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
   Crossing first;
   const double h = to.t - from.t;
+  has_halfway_ = false;
   for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
     if (!is_watched(i, from)) continue;
     const GuardValue a = guard_at(i, from, to.stuck_at);  // both ends by the floors of the step
     const GuardValue b = guard_at(i, to, to.stuck_at);
-    const bool has_slope = has_rate(i, from);
-    const double slope0 = has_slope ? h * a.rate : b.value - a.value, slope1 = has_slope ? h * b.rate : slope0;
+    double slope0 = b.value - a.value, slope1 = slope0;
+    if (has_rate(i, from)) {
+      slope0 = h * a.rate;
+      slope1 = h * b.rate;
+    } else if (i >= row_.size()) {  // the parabola through three values: a load may exceed the limit between both ends
+      const double middle = guard_at(i, halfway(from, to), to.stuck_at).value;
+      slope0 = 4.0 * middle - 3.0 * a.value - b.value;
+      slope1 = a.value - 4.0 * middle + 3.0 * b.value;
+    }
     // A coordinate may cross and come back within a step: the cubic is searched in parts.
     constexpr int parts = 8;
     double low = least, at_low = cubic(least, a.value, slope0, b.value, slope1);

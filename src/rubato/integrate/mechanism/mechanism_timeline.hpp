@@ -74,6 +74,8 @@ class MechanismTimeline final : public Timeline {
   void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
   GuardValue guard_at(std::size_t lock, const system::State& state, const Vector& floors);
+  /// Between both ends of a step, by the cubics of its positions and velocities; kept until the next first_crossing().
+  const system::State& halfway(const system::State& from, const system::State& to);
   bool has_rate(std::size_t guard, const system::State& from) const;
   bool is_watched(std::size_t lock, const system::State& state) const;
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
@@ -92,6 +94,8 @@ class MechanismTimeline final : public Timeline {
   std::vector<int> friction_of_;                      // of the joint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
   system::State balanced_;
+  system::State halfway_;
+  bool has_halfway_ = false;
   mutable std::vector<double> joint_switches_;  // of laws of joints, in the interval of the last breakpoints()
   std::vector<LockEvent> events_;
   /// Transitions of a guard since a time and a place.

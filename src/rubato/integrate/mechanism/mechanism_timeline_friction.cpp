@@ -1,0 +1,88 @@
+#include <rubato/integrate/mechanism/friction_release.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+// What a step of a mechanism does to the friction in its joints.
+namespace rubato::integrate {
+void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    if (equations_.is_led(i)) continue;
+    const bool rests = model::is_at_rest(state.rubbing[i]);
+    if (model::is_at_rest(old[i]) != rests) events_.push_back({state.t, -1, rests, 0.0, static_cast<int>(i)});
+  }
+}
+
+MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State& before, system::State& state) {
+  Rubbing result;
+  result.candidates.assign(state.rubbing.size(), 0);
+  result.at_limit = result.candidates;
+  std::vector<std::size_t> reached;
+  std::size_t resting = 0;
+  for (std::size_t i = 0; i < state.rubbing.size(); ++i) {
+    if (equations_.is_led(i)) continue;
+    resting += model::is_at_rest(state.rubbing[i]) ? 1 : 0;
+    if (state.rubbing[i] == model::friction_free || pulls(state.rubbing[i])) continue;
+    const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
+    if (now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0) reached.push_back(i);
+  }
+  result.has_changed = !reached.empty();
+  for (const std::size_t i : reached) {
+    const bool is_pair = mechanism_.model().frictions[i].partner >= 0;
+    const bool has_stuck = state.rubbing[i] == model::friction_sticks;
+    if (is_pair && !has_stuck && turns_away(i, state)) continue;
+    count_transition(row_.size() + i, state);
+    if (!has_stuck || is_pair || resting > 1) {
+      result.candidates[i] = 1;
+    } else {
+      const double force = balanced_friction(i, state);
+      state.rubbing[i] = force < 0.0 ? model::friction_slides_up : model::friction_slides_down;
+    }
+    if (!has_stuck) continue;
+    result.at_limit[i] = 1;
+    for (std::size_t k = 0; k < state.rubbing.size(); ++k)  // what pulls may give way first
+      result.at_limit[k] = result.at_limit[k] || pulls(state.rubbing[k]);
+  }
+  return result;
+}
+
+double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
+  balanced_ = state;
+  if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
+  return equations_.friction_force(i, balanced_.multiplier);
+}
+
+bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
+  constexpr double rest = 5.0 * model::slip_floor_share;  // what the floor may leave across
+  const auto first = static_cast<Index>(i), second = static_cast<Index>(mechanism_.model().frictions[i].partner);
+  equations_.go_to(state, model::Side::left);
+  const Eigen::Vector2d slip = equations_.slip_velocity(i);
+  const double before = std::hypot(state.stuck_at[first], state.stuck_at[second]) / model::slip_floor_share;
+  if (slip.norm() <= rest * before) return false;
+  state.stuck_at[first] = model::slip_floor_share * slip[0];
+  state.stuck_at[second] = model::slip_floor_share * slip[1];
+  return true;
+}
+
+GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state, const Vector& floors) {
+  if (state.rubbing[i] == model::friction_sticks) {
+    balanced_ = state;
+    if (!find_acceleration(equations_, balanced_, model::Side::left))
+      return {-std::abs(equations_.friction_limit(i, state.multiplier)), 0.0};  // nothing goes with these phases
+    return {equations_.friction_limit(i, balanced_.multiplier) - equations_.friction_size(i, balanced_.multiplier),
+            0.0};
+  }
+  if (const int other = mechanism_.model().frictions[i].partner; other >= 0) {
+    const Eigen::Vector2d way = Eigen::Vector2d(floors[static_cast<Index>(i)], floors[other]).normalized();
+    equations_.go_to(state, model::Side::left);
+    return {way.dot(equations_.slip_velocity(i)), way.dot(equations_.slip_acceleration(i, state.acceleration))};
+  }
+  const auto& s = mechanism_.model().frictions[i].s;
+  const double direction = model::sliding_direction(state.rubbing[i]);
+  const model::Motion motion = motion_of(state);
+  return {direction * s.rate(motion), direction * s.second_rate(motion, padded_acceleration_.data() + 1)};
+}
+
+}  // namespace rubato::integrate
