@@ -148,7 +148,11 @@ TEST_P(CoupledFrictions, GoToAndFroAsASetOfForcesAllows) {
   };
   const Case cases[] = {{{0.78, {{0.39, 0.83, 21.0}}}, -0.2, 36.0, 5.5},
                         {{0.84, {{0.46, 0.89, 35.0}}}, -9.0, 69.0, 12.0},
-                        {{0.55, {{-0.3, 0.95, 21.0}, {0.35, -0.4, 7.0}}}, 2.3, 50.0, 8.7}};
+                        {{0.55, {{-0.3, 0.95, 21.0}, {0.35, -0.4, 7.0}}}, 2.3, 50.0, 8.7},
+                        {{0.728, {{-0.3, 0.664, 9.14}}}, -4.23, 26.4, 10.1},
+                        {{0.614, {{-0.3, 0.796, 7.37}}}, -0.03, 14.0, 11.4},
+                        {{0.678, {{0.347, 0.391, 16.7}, {0.311, -0.945, 3.86}}}, 5.29, 31.4, 13.2},
+                        {{0.744, {{-0.58, 0.422, 5.75}, {-0.49, -0.688, 13.6}}}, 1.36, 26.0, 8.62}};
   for (const Case& of : cases) {
     constexpr double duration = 2.0;
     const std::vector<double> expected = way_of(of.block, of.mean, of.amplitude, of.frequency, duration);
@@ -158,7 +162,7 @@ TEST_P(CoupledFrictions, GoToAndFroAsASetOfForcesAllows) {
     const auto& table = ran.table("run");
     ASSERT_EQ(table.rows.size(), expected.size());
     EXPECT_GT(*std::max_element(expected.begin(), expected.end()) - *std::min_element(expected.begin(), expected.end()),
-              0.05);
+              0.02);
     for (std::size_t i = 0; i < expected.size(); ++i)
       EXPECT_NEAR(table.rows[i][table.column("displacement", "guide")], expected[i], 3e-4) << i << ' ' << force;
   }
