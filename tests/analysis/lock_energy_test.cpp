@@ -1,4 +1,4 @@
-#include <support/mechanism_study.hpp>
+#include <support/laid_studies.hpp>
 
 #include <gtest/gtest.h>
 
@@ -96,6 +96,19 @@ TEST(RigidStop, LeavesItsJointToFrictionAsItLetsGo) {
     EXPECT_NEAR(ran.last("run.energy", "friction_dissipated"), goes_back ? 0.2 * (1.0 + 0.5 * rate) : 0.2, 1e-8);
     EXPECT_NEAR(ran.last("run.energy", "residue"), 0.0, 1e-8);
   }
+}
+
+// 5 N press the block of 2 kg onto its stop, but for 33 ms of each half second: while it rests steps are of 80 ms.
+TEST(RigidStop, LetsGoWhereTheLoadPullsBetweenTwoSteps) {
+  const MechanismStudy ran(
+      testing::block_in_guide(testing::in_plane, 0.0, "displacement = -0.001\nlock = { at = 0.0, kind = \"stop\" }") +
+      "[[force]]\non = \"block.x\"\nexpression = \"5 - 5.1*sin(12*t)\"\n" +
+      testing::transient("{ tolerance = 1e-4 }", 4.0));
+  const auto& events = ran.table("run.events");
+  ASSERT_EQ(events.rows.size(), 17u);  // it comes to the stop, and leaves it in each of eight periods
+  for (std::size_t i = 1; i < events.rows.size(); i += 2)
+    EXPECT_NEAR(events.rows[i][0], (std::asin(5.0 / 5.1) + static_cast<double>(i / 2) * 2.0 * std::numbers::pi) / 12.0,
+                1e-8);
 }
 
 }  // namespace

@@ -132,6 +132,21 @@ void MechanismTimeline::count_transition(std::size_t guard, const system::State&
   if (++past.count > most) chattering_ = static_cast<Index>(guard);
 }
 
+const MechanismTimeline::Balanced& MechanismTimeline::balanced(const system::State& state) {
+  for (std::size_t k = 0; k < balance_count_; ++k) {
+    if (balances_[k].of != &state) continue;
+    equations_.go_to(balances_[k].state, model::Side::left);
+    return balances_[k];
+  }
+  Balanced& next = balances_[balance_count_ < balances_.size() ? balance_count_++ : balances_.size() - 1];
+  next.of = &state;
+  next.state = state;
+  next.is_found = find_acceleration(equations_, next.state, model::Side::left);
+  return next;
+}
+
+void MechanismTimeline::forget_balances() { balance_count_ = 0; }
+
 model::Motion MechanismTimeline::motion_of(const system::State& state) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), padded_.data() + 1);
   std::copy(state.acceleration.data(), state.acceleration.data() + state.acceleration.size(),
@@ -146,9 +161,10 @@ model::Motion MechanismTimeline::motion_of(const system::State& state) {
 }
 
 bool MechanismTimeline::release(system::State& state) {
+  const auto& model = mechanism_.model();
   for (std::size_t i = 0; i < row_.size(); ++i) {
     if (row_[i] < 0 || !is_watched(i, state) || state.phase[i] != model::lock_engaged) continue;
-    if (!(guard_at(i, state, state.stuck_at).value < 0.0)) continue;
+    if (!(model.locks[i].sign * state.multiplier[row_[i]] < 0.0)) continue;
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
     const std::vector<int> old = state.rubbing;
@@ -178,7 +194,10 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
   const model::Motion motion = motion_of(state);
   const double s = lock.s.value(state.q.data()), rate = lock.s.rate(motion);
   if (state.phase[i] == model::lock_open) return {lock.sign * (lock.at - s), -lock.sign * rate};
-  if (row_[i] >= 0) return {lock.sign * state.multiplier[row_[i]], 0.0};
+  if (row_[i] >= 0) {
+    const Balanced& now = balanced(state);
+    return {lock.sign * (now.is_found ? now.state : state).multiplier[row_[i]], 0.0};
+  }
   const double second_rate = lock.s.second_rate(motion, padded_acceleration_.data() + 1);
   return {lock.sign * (lock.stiffness * (s - lock.at) + lock.damping * rate),
           lock.sign * (lock.stiffness * rate + lock.damping * second_rate)};
@@ -200,6 +219,7 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
   Crossing first;
   const double h = to.t - from.t;
   has_halfway_ = false;
+  forget_balances();
   for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
     if (!is_watched(i, from)) continue;
     const GuardValue a = guard_at(i, from, to.stuck_at);  // both ends by the floors of the step
@@ -208,7 +228,7 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
     if (has_rate(i, from)) {
       slope0 = h * a.rate;
       slope1 = h * b.rate;
-    } else if (i >= row_.size()) {  // the parabola through three values: a load may exceed the limit between both ends
+    } else {  // the parabola through three values: a load may pass the limit and come back
       const double middle = guard_at(i, halfway(from, to), to.stuck_at).value;
       slope0 = 4.0 * middle - 3.0 * a.value - b.value;
       slope1 = a.value - 4.0 * middle + 3.0 * b.value;
@@ -238,6 +258,7 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
 
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const auto i = static_cast<std::size_t>(guard);
+  forget_balances();
   GuardValue value = guard_at(i, to, to.stuck_at);
   if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from, to.stuck_at).value) / (to.t - from.t);
   return value;

@@ -4,6 +4,7 @@
 #include <rubato/system/loads.hpp>
 #include <rubato/system/mechanism_equations.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct LockEvent {
 ///
 ///   open                      sign (at - s)                  the coordinate reaches the lock
 ///   at a stop with stiffness  sign (stiffness (s - at) + damping s')   its force would pull
-///   at a stop without         sign times its multiplier
+///   at a stop without         sign times its multiplier of equilibrium at that instant
 ///   latched                   nothing any more
 ///   slides                    s' in the direction in which it slides; of two that share a limit their slip velocity
 ///                             along that at the start of the step
@@ -60,8 +61,15 @@ class MechanismTimeline final : public Timeline {
   };
   /// Where the mechanism is, for its joints, with padded_ and padded_acceleration_ set to the state.
   model::Motion motion_of(const system::State& state);
-  /// The friction of a joint with the multipliers of equilibrium, which stay in balanced_.
-  double balanced_friction(std::size_t friction, const system::State& state);
+  /// A state with the multipliers of equilibrium at its instant. The equations are there.
+  struct Balanced {
+    const system::State* of = nullptr;
+    system::State state;
+    bool is_found = false;
+  };
+  /// Kept for three states at a time, which must not change meanwhile, until forget_balances().
+  const Balanced& balanced(const system::State& state);
+  void forget_balances();
   /// @param floors  of slip velocities, as State::stuck_at has them
   GuardValue friction_guard(std::size_t friction, const system::State& state, const Vector& floors);
   /// Whether two frictions that share a limit go on across the way in which the step began; their floor is then new.
@@ -93,7 +101,8 @@ class MechanismTimeline final : public Timeline {
   std::vector<Index> row_;                            // of the constraint of each lock, or -1
   std::vector<int> friction_of_;                      // of the joint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
-  system::State balanced_;
+  std::array<Balanced, 3> balances_;
+  std::size_t balance_count_ = 0;
   system::State halfway_;
   bool has_halfway_ = false;
   mutable std::vector<double> joint_switches_;  // of laws of joints, in the interval of the last breakpoints()

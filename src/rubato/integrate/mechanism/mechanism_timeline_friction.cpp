@@ -37,7 +37,9 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
     if (!has_stuck || is_pair || resting > 1) {
       result.candidates[i] = 1;
     } else {
-      const double force = balanced_friction(i, state);
+      forget_balances();
+      const Balanced& now = balanced(state);
+      const double force = now.is_found ? equations_.friction_force(i, now.state.multiplier) : 0.0;
       state.rubbing[i] = force < 0.0 ? model::friction_slides_up : model::friction_slides_down;
     }
     if (!has_stuck) continue;
@@ -46,12 +48,6 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
       result.at_limit[k] = result.at_limit[k] || pulls(state.rubbing[k]);
   }
   return result;
-}
-
-double MechanismTimeline::balanced_friction(std::size_t i, const system::State& state) {
-  balanced_ = state;
-  if (!find_acceleration(equations_, balanced_, model::Side::left)) return 0.0;
-  return equations_.friction_force(i, balanced_.multiplier);
 }
 
 bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
@@ -68,11 +64,11 @@ bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
 
 GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state, const Vector& floors) {
   if (state.rubbing[i] == model::friction_sticks) {
-    balanced_ = state;
-    if (!find_acceleration(equations_, balanced_, model::Side::left))
-      return {-std::abs(equations_.friction_limit(i, state.multiplier)), 0.0};  // nothing goes with these phases
-    return {equations_.friction_limit(i, balanced_.multiplier) - equations_.friction_size(i, balanced_.multiplier),
-            0.0};
+    const Balanced& now = balanced(state);
+    if (!now.is_found)  // nothing goes with these phases
+      return {-std::abs(equations_.friction_limit(i, state.multiplier)), 0.0};
+    const Vector& multiplier = now.state.multiplier;
+    return {equations_.friction_limit(i, multiplier) - equations_.friction_size(i, multiplier), 0.0};
   }
   if (const int other = mechanism_.model().frictions[i].partner; other >= 0) {
     const Eigen::Vector2d way = Eigen::Vector2d(floors[static_cast<Index>(i)], floors[other]).normalized();
