@@ -19,12 +19,6 @@ system::Loads loads_of(const model::Mechanism& model) {
   return system::Loads(std::move(terms));
 }
 
-/// Cubic through values and slopes at both ends of [0, 1].
-double cubic(double x, double y0, double slope0, double y1, double slope1) {
-  const double rest = 1.0 - x;
-  return rest * rest * ((1.0 + 2.0 * x) * y0 + x * slope0) + x * x * ((1.0 + 2.0 * rest) * y1 - rest * slope1);
-}
-
 }  // namespace
 
 MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double resolution)
@@ -134,7 +128,7 @@ void MechanismTimeline::count_transition(std::size_t guard, const system::State&
 
 const MechanismTimeline::Balanced& MechanismTimeline::balanced(const system::State& state) {
   for (std::size_t k = 0; k < balance_count_; ++k) {
-    if (balances_[k].of != &state) continue;
+    if (balances_[k].of != &state || balances_[k].state.t != state.t) continue;
     equations_.go_to(balances_[k].state, model::Side::left);
     return balances_[k];
   }
@@ -201,59 +195,6 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
   const double second_rate = lock.s.second_rate(motion, padded_acceleration_.data() + 1);
   return {lock.sign * (lock.stiffness * (s - lock.at) + lock.damping * rate),
           lock.sign * (lock.stiffness * rate + lock.damping * second_rate)};
-}
-
-const system::State& MechanismTimeline::halfway(const system::State& from, const system::State& to) {
-  if (has_halfway_) return halfway_;
-  has_halfway_ = true;
-  const double h = to.t - from.t;
-  halfway_ = to;
-  halfway_.t = from.t + 0.5 * h;
-  mechanism_.difference(from.q, to.q, left_);
-  mechanism_.retract(from.q, 0.5 * left_ + (0.125 * h) * (from.v - to.v), halfway_.q);
-  halfway_.v = 0.5 * (from.v + to.v) + (0.125 * h) * (from.acceleration - to.acceleration);
-  return halfway_;
-}
-
-Crossing MechanismTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
-  Crossing first;
-  const double h = to.t - from.t;
-  has_halfway_ = false;
-  forget_balances();
-  for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
-    if (!is_watched(i, from)) continue;
-    const GuardValue a = guard_at(i, from, to.stuck_at);  // both ends by the floors of the step
-    const GuardValue b = guard_at(i, to, to.stuck_at);
-    double slope0 = b.value - a.value, slope1 = slope0;
-    if (has_rate(i, from)) {
-      slope0 = h * a.rate;
-      slope1 = h * b.rate;
-    } else {  // the parabola through three values: a load may pass the limit and come back
-      const double middle = guard_at(i, halfway(from, to), to.stuck_at).value;
-      slope0 = 4.0 * middle - 3.0 * a.value - b.value;
-      slope1 = a.value - 4.0 * middle + 3.0 * b.value;
-    }
-    // A coordinate may cross and come back within a step: the cubic is searched in parts.
-    constexpr int parts = 8;
-    double low = least, at_low = cubic(least, a.value, slope0, b.value, slope1);
-    for (int part = 1; part <= parts; ++part) {
-      const double high = std::max(least, static_cast<double>(part) / parts);
-      const double at_high = part == parts ? b.value : cubic(high, a.value, slope0, b.value, slope1);
-      if (at_high < 0.0 && at_high < at_low) {
-        double left = low, right = high;
-        for (int k = 0; k < 50 && at_low > 0.0; ++k) {
-          const double middle = 0.5 * (left + right);
-          (cubic(middle, a.value, slope0, b.value, slope1) > 0.0 ? left : right) = middle;
-        }
-        const double share = at_low > 0.0 ? right : low;
-        if (first.guard < 0 || share < first.share) first = {static_cast<Index>(i), std::min(share, 1.0)};
-        break;
-      }
-      low = high;
-      at_low = at_high;
-    }
-  }
-  return first;
 }
 
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {

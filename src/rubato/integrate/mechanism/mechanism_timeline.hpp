@@ -67,7 +67,7 @@ class MechanismTimeline final : public Timeline {
     system::State state;
     bool is_found = false;
   };
-  /// Kept for three states at a time, which must not change meanwhile, until forget_balances().
+  /// Kept for four states at a time, which must not change meanwhile, until forget_balances().
   const Balanced& balanced(const system::State& state);
   void forget_balances();
   /// @param floors  of slip velocities, as State::stuck_at has them
@@ -82,8 +82,11 @@ class MechanismTimeline final : public Timeline {
   void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
   GuardValue guard_at(std::size_t lock, const system::State& state, const Vector& floors);
-  /// Between both ends of a step, by the cubics of its positions and velocities; kept until the next first_crossing().
-  const system::State& halfway(const system::State& from, const system::State& to);
+  /// The state at a share of a step, by the cubics of its positions and velocities.
+  void interpolate(const system::State& from, const system::State& to, double share, system::State& out) const;
+  /// Where a guard without a rate first passes zero, as a share of the step; 2: nowhere. Its values at both ends and in
+  /// the middle give a parabola; where that turns round close to zero the guard is looked at.
+  double first_passage(std::size_t guard, const system::State& from, const system::State& to, double least);
   bool has_rate(std::size_t guard, const system::State& from) const;
   bool is_watched(std::size_t lock, const system::State& state) const;
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
@@ -101,9 +104,9 @@ class MechanismTimeline final : public Timeline {
   std::vector<Index> row_;                            // of the constraint of each lock, or -1
   std::vector<int> friction_of_;                      // of the joint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
-  std::array<Balanced, 3> balances_;
+  std::array<Balanced, 4> balances_;
   std::size_t balance_count_ = 0;
-  system::State halfway_;
+  system::State halfway_, turning_;  // of the last step that first_crossing() looked at
   bool has_halfway_ = false;
   mutable std::vector<double> joint_switches_;  // of laws of joints, in the interval of the last breakpoints()
   std::vector<LockEvent> events_;

@@ -1,0 +1,89 @@
+#include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+// Where the guards of a mechanism first pass zero within a step.
+namespace rubato::integrate {
+namespace {
+
+/// Cubic through values and slopes at both ends of [0, 1].
+double cubic(double x, double y0, double slope0, double y1, double slope1) {
+  const double rest = 1.0 - x;
+  return rest * rest * ((1.0 + 2.0 * x) * y0 + x * slope0) + x * x * ((1.0 + 2.0 * rest) * y1 - rest * slope1);
+}
+
+/// Where the cubic through values and slopes at both ends of [0, 1] first becomes negative from `least` on; 2: nowhere.
+/// It may cross and come back: it is searched in parts.
+double first_zero(double least, double y0, double slope0, double y1, double slope1) {
+  constexpr int parts = 8;
+  double low = least, at_low = cubic(least, y0, slope0, y1, slope1);
+  for (int part = 1; part <= parts; ++part) {
+    const double high = std::max(least, static_cast<double>(part) / parts);
+    const double at_high = part == parts ? y1 : cubic(high, y0, slope0, y1, slope1);
+    if (at_high < 0.0 && at_high < at_low) {
+      double left = low, right = high;
+      for (int k = 0; k < 50 && at_low > 0.0; ++k) {
+        const double middle = 0.5 * (left + right);
+        (cubic(middle, y0, slope0, y1, slope1) > 0.0 ? left : right) = middle;
+      }
+      return std::min(at_low > 0.0 ? right : low, 1.0);
+    }
+    low = high;
+    at_low = at_high;
+  }
+  return 2.0;
+}
+
+}  // namespace
+
+void MechanismTimeline::interpolate(const system::State& from, const system::State& to, double share,
+                                    system::State& out) const {
+  const double h = to.t - from.t, rest = 1.0 - share;
+  const double passed = share * share * (1.0 + 2.0 * rest), first = h * share * rest * rest,
+               last = -h * share * share * rest;
+  out = to;
+  out.t = from.t + share * h;
+  mechanism_.difference(from.q, to.q, out.v);
+  mechanism_.retract(from.q, passed * out.v + first * from.v + last * to.v, out.q);
+  out.v = (1.0 - passed) * from.v + passed * to.v + first * from.acceleration + last * to.acceleration;
+}
+
+double MechanismTimeline::first_passage(std::size_t i, const system::State& from, const system::State& to,
+                                        double least) {
+  if (!has_halfway_) interpolate(from, to, 0.5, halfway_);
+  has_halfway_ = true;
+  const double a = guard_at(i, from, to.stuck_at).value, b = guard_at(i, to, to.stuck_at).value;
+  const double middle = guard_at(i, halfway_, to.stuck_at).value;
+  const double slope = 4.0 * middle - 3.0 * a - b, curvature = 4.0 * (a + b - 2.0 * middle);
+  const double found = first_zero(least, a, slope, b, slope + curvature);
+  const double turn = -slope / curvature, at_turn = a + 0.5 * slope * turn;
+  constexpr double close = 0.1;
+  const bool may_touch = curvature > 0.0 && turn > least && turn < std::min(found, 1.0) && a > 0.0;
+  if (!may_touch || at_turn > close * std::max(a, b)) return found;
+  interpolate(from, to, turn, turning_);
+  const double seen = guard_at(i, turning_, to.stuck_at).value;
+  return seen < 0.0 ? std::max(least, turn * (1.0 - std::sqrt(-seen / (a - seen)))) : found;
+}
+
+Crossing MechanismTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
+  Crossing first;
+  const double h = to.t - from.t;
+  has_halfway_ = false;
+  forget_balances();
+  for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
+    if (!is_watched(i, from)) continue;
+    double share = 2.0;
+    if (has_rate(i, from)) {
+      const GuardValue a = guard_at(i, from, to.stuck_at);  // both ends by the floors of the step
+      const GuardValue b = guard_at(i, to, to.stuck_at);
+      share = first_zero(least, a.value, h * a.rate, b.value, h * b.rate);
+    } else {
+      share = first_passage(i, from, to, least);
+    }
+    if (share <= 1.0 && (first.guard < 0 || share < first.share)) first = {static_cast<Index>(i), share};
+  }
+  return first;
+}
+
+}  // namespace rubato::integrate
