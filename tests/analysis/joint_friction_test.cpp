@@ -112,6 +112,27 @@ TEST(JointFrictionInThePlane, LetsGoWhereTheLoadExceedsTheLimitBetweenTwoSteps) 
     }
 }
 
+// It comes to rest where the table of a load has a row, give or take the last digits: what lies between is no step.
+TEST(JointFrictionInThePlane, StopsWhereALoadHasAKink) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "kink.csv";
+  for (const double speed : {0.7, 1.0, 1.3, 1.9, 2.3}) {
+    const double stop = speed / 2.5,
+                 ways[] = {stop, std::nextafter(stop, 2.0), stop * (1.0 + 1e-14), stop * (1.0 - 1e-14)};
+    for (const double kink : ways)
+      for (const char* step : {"0.01", "{ tolerance = 1e-5 }"}) {
+        std::ofstream(file) << fmt::format("0, 0\n{:.17g}, 0\n{:.17g}, 8\n3, 8\n", kink, kink + 1.0);
+        const MechanismStudy ran(
+            block_in_guide(in_plane, 0.0, "friction = { coefficient = 0.5, preload = 10.0 }", speed) +
+            "[[force]]\non = \"block.x\"\ntable = \"" + file.string() + "\"\n" + transient(step, 2.0));
+        ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+        ASSERT_EQ(ran.table("run.events").rows.size(), 2u) << speed;
+        EXPECT_NEAR(ran.at(0, "run.events", "time"), stop,
+                    1e-7);  // within a millionth of a step it is met a step later
+        EXPECT_NEAR(ran.at(1, "run.events", "time"), stop + 0.625, 1e-9);  // 8 N/s reach 5 N
+      }
+  }
+}
+
 TEST_P(JointFriction, TakesTheSameAmplitudeFromEveryHalfSwing) {
   const MechanismStudy ran(torsion(GetParam()));
   ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;

@@ -188,11 +188,11 @@ void refuse_unknown_reactions(const Location& where, system::MechanismEquations&
 }
 
 /// Decides which joints with friction stick at the start.
-void settle_start(const Location& where, const system::Mechanism& mechanism, system::State& state) {
+void settle_start(const Location& where, const system::Mechanism& mechanism, double duration, system::State& state) {
   if (mechanism.model().frictions.empty()) return;
   system::MechanismEquations equations(mechanism);
   refuse_unknown_reactions(where, equations, state);
-  if (!integrate::settle_new_velocities(equations, state))
+  if (!integrate::settle_new_velocities(equations, state, 1e-6 * duration))
     throw InvalidInput(where,
                        "no accelerations were found at the start that go with the friction of the joints: with "
                        "so large a coefficient their reactions grow without bound; take a smaller one");
@@ -326,7 +326,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
       plan.failure = "it has no static start: " + plan.failure;
     }
   }
-  if (plan.failure.empty()) settle_start(where, mechanism, transient.start);
+  if (plan.failure.empty()) settle_start(where, mechanism, transient.duration, transient.start);
   warn_of_locks_behind(mechanism, transient.start, plan.warnings);
   if (description.automatic_step) {
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,

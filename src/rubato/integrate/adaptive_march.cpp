@@ -152,6 +152,7 @@ class Marcher {
     accept(length, error);
     if (crawls(length.step)) return fail({StepOutcome::crawls, -1}, length.step);
     if (is_event && base_.t < end_ && goes_on_) pass_event();
+    if (length.arrives && base_.t < end_ && goes_on_) pass_breakpoint();
   }
 
   /// Whether steps have been so short for so long that the run would not end: of a run that takes longer steps at all.
@@ -206,7 +207,11 @@ class Marcher {
       const bool is_there = std::abs(guard.value) <= resolution * std::abs(guard.rate);
       if (is_there || (now.guard >= 0 && high - low <= resolution)) break;
     }
-    return true;
+    // What would be left of the way to a breakpoint is nothing: no step can be made of it.
+    const double next = breakpoints_[next_breakpoint_];
+    if (length.t1 == next || next - length.t1 > resolution) return true;
+    length = {next - base_.t, next, 0.0, true};
+    return has_tried(length);
   }
 
   void accept(const Length& length, double error) {
@@ -224,7 +229,6 @@ class Marcher {
       report_.march.end = MarchEnd::stopped;
     }
     std::swap(base_, to_);
-    if (length.arrives && base_.t < end_ && goes_on_) pass_breakpoint();
   }
 
   /// A kink of the loads ends what differences know; a jump starts the march anew, and so does a step between two kinks

@@ -1,6 +1,7 @@
 #include <rubato/integrate/mechanism/friction_choice.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/friction_release.hpp>
+#include <rubato/integrate/mechanism/held_frictions.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <algorithm>
@@ -14,23 +15,15 @@ using model::friction_slides_down;
 using model::friction_slides_up;
 using model::friction_sticks;
 
-/// Whether a rigid lock of the same joint holds what rubs: what either of them carries nothing tells.
-bool is_locked(const model::Mechanism& model, const system::State& state, std::size_t friction) {
-  for (std::size_t lock = 0; lock < model.locks.size(); ++lock)
-    if (state.phase[lock] == model::lock_engaged && model.locks[lock].is_rigid() &&
-        model.locks[lock].name == model.frictions[friction].name)
-      return true;
-  return false;
-}
-
-/// Leaves out what a rigid lock holds; what one held until now is a candidate.
-void leave_out_locked(const system::MechanismEquations& equations, system::State& state,
-                      std::vector<char>& candidates) {
+/// Leaves out what rigid locks or drives hold; what they held until now is a candidate.
+void leave_out_held(system::MechanismEquations& equations, system::State& state, double ahead,
+                    std::vector<char>& candidates) {
+  const std::vector<char> is_driven = frictions_held_by_drives(equations, state, ahead);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (equations.is_led(i)) continue;
     const bool has_been_free = state.rubbing[i] == friction_free;
-    const bool is_left_out = is_locked(equations.mechanism().model(), state, i);
-    if (is_left_out) state.rubbing[i] = friction_free;
+    const bool is_left_out = is_driven[i] || is_locked(equations.mechanism().model(), state, i);
+    if (is_left_out) set_friction_phase(equations.mechanism().model(), state, i, friction_free);
     candidates[i] = !is_left_out && (candidates[i] || has_been_free);
   }
 }
@@ -113,8 +106,16 @@ bool settle_phases(system::MechanismEquations& equations, system::State& state, 
 
 }  // namespace
 
+bool is_locked(const model::Mechanism& model, const system::State& state, std::size_t friction) {
+  for (std::size_t lock = 0; lock < model.locks.size(); ++lock)
+    if (state.phase[lock] == model::lock_engaged && model.locks[lock].is_rigid() &&
+        model.locks[lock].name == model.frictions[friction].name)
+      return true;
+  return false;
+}
+
 bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
-                     std::vector<char> at_limit) {
+                     double ahead, std::vector<char> at_limit) {
   const std::size_t count = candidates.size();
   at_limit.resize(count, 0);
   for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || pulls(state.rubbing[i]);
@@ -127,7 +128,7 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
     if (!still.is_consistent) return false;
     state = still.state;
   }
-  leave_out_locked(equations, state, candidates);
+  leave_out_held(equations, state, ahead, candidates);
   const std::vector<char> rests = resting_frictions(equations, state, candidates);
   if (!settle_phases(equations, state, candidates, at_limit, rests)) return false;
   for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || rests[i];
@@ -140,7 +141,7 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
   return at_rest.is_consistent;
 }
 
-bool settle_new_velocities(system::MechanismEquations& equations, system::State& state) {
+bool settle_new_velocities(system::MechanismEquations& equations, system::State& state, double ahead) {
   const auto& frictions = equations.mechanism().model().frictions;
   std::vector<char> candidates(frictions.size(), 0);
   equations.go_to(state, model::Side::right);
@@ -158,7 +159,7 @@ bool settle_new_velocities(system::MechanismEquations& equations, system::State&
     candidates[i] = std::abs(rate) <= 1e-10 * fastest;
     state.rubbing[i] = rate > 0.0 ? friction_slides_up : friction_slides_down;
   }
-  return settle_friction(equations, state, candidates);
+  return settle_friction(equations, state, candidates, ahead);
 }
 
 }  // namespace rubato::integrate

@@ -14,17 +14,21 @@ namespace rubato::integrate {
 /// again; one that would then move against its way is held. Joints that stick already are looked at like candidates;
 /// those that slide go on. What goes, but cannot since others hold it (two dry hinges on one axis, of which one alone
 /// is not strong enough), pulls; what pulls already is a candidate again. One that a rigid lock of its own joint holds
-/// is left out, and is a candidate when that lets go.
+/// is left out, and is a candidate when that lets go; so is one that drives hold which stand still.
 /// @param candidates  of all joints with friction
+/// @param ahead       for which a drive that stands must stand to hold joints [s]
 /// @param at_limit    those that sticking took to their limit just now, or that pulled: they stick only if they are
 ///                    clearly below it; empty: none
 /// @return false where no acceleration is found
 bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
-                     std::vector<char> at_limit = {});
+                     double ahead, std::vector<char> at_limit = {});
+
+/// Whether a rigid lock of the same joint holds what rubs: what either of them carries nothing tells.
+bool is_locked(const model::Mechanism& model, const system::State& state, std::size_t friction);
 
 /// The same where velocities are new (at the start, after an impact): joints at rest are candidates, the others slide
 /// as they move. Impulses are taken without friction: one of a preload is none in no time, one of a reaction is left
 /// out.
-bool settle_new_velocities(system::MechanismEquations& equations, system::State& state);
+bool settle_new_velocities(system::MechanismEquations& equations, system::State& state, double ahead);
 
 }  // namespace rubato::integrate

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace rubato::integrate {
 namespace {
@@ -44,9 +45,9 @@ bool find_friction_mobilities(system::MechanismEquations& equations, const syste
       motion += correction;
       impulse += rate;
     }
-    FrictionMobility of{slope, motion, false};
+    FrictionMobility of{slope, motion, {}};
     for (const auto& drive : model.drives)  // by reciprocity: what the drive would move of s
-      of.is_driven = of.is_driven || !(std::abs(impulse[mechanism.first_row(drive.joint)]) <= driven);
+      of.driven.push_back(!(std::abs(impulse[mechanism.first_row(drive.joint)]) <= driven));
     found.push_back(of);
   }
   return true;
@@ -80,8 +81,47 @@ std::vector<char> held_frictions(system::MechanismEquations& equations, const sy
   for (std::size_t i = 0; i < sliding.size(); ++i) {
     const double alone = now[i].slope.cwiseAbs2().cwiseQuotient(masses).sum();
     const double least = std::max(same_axis * without[i].of(without[i]), round_off * alone);
-    is_held[sliding[i]] = !now[i].is_driven && now[i].of(now[i]) <= least;
+    const bool is_driven = std::count(now[i].driven.begin(), now[i].driven.end(), 1) > 0;
+    is_held[sliding[i]] = !is_driven && now[i].of(now[i]) <= least;
   }
+  return is_held;
+}
+
+std::vector<char> frictions_held_by_drives(system::MechanismEquations& equations, const system::State& state,
+                                           double ahead) {
+  constexpr double nothing = 1e-10;  // of the mobility without any joint
+  const auto& model = equations.mechanism().model();
+  const std::size_t count = model.frictions.size();
+  std::vector<char> is_held(count, 0), stands;
+  for (const auto& drive : model.drives) {
+    const auto is_still = [&](double t) {
+      const auto motion = model::derivatives(drive.law, t, model::Side::right);
+      return motion.rate == 0.0 && motion.second_rate == 0.0;
+    };
+    stands.push_back(is_still(state.t) && is_still(state.t + ahead));
+  }
+  const auto standing = static_cast<std::size_t>(std::count(stands.begin(), stands.end(), 1));
+  if (count == 0 || standing == 0) return is_held;
+  const bool all_stand = standing == stands.size();
+  system::State open = state;
+  std::fill(open.rubbing.begin(), open.rubbing.end(), model::friction_free);
+  std::vector<std::size_t> all(count);
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<FrictionMobility> found;
+  if (!find_friction_mobilities(equations, open, all, found)) return is_held;
+  const Vector masses = equations.mechanism().mass().diagonal();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double alone = found[i].slope.cwiseAbs2().cwiseQuotient(masses).sum();
+    bool is_driven = all_stand, is_moved = false;  // in a dead centre no drive seems to move it
+    for (std::size_t k = 0; k < stands.size(); ++k) {
+      is_driven = is_driven || found[i].driven[k];
+      is_moved = is_moved || (found[i].driven[k] && !stands[k]);
+    }
+    is_held[i] = is_driven && !is_moved && found[i].of(found[i]) <= nothing * alone;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    if (const int other = model.frictions[i].partner; other >= 0)
+      is_held[i] = is_held[i] && is_held[static_cast<std::size_t>(other)];
   return is_held;
 }
 

@@ -9,9 +9,9 @@ namespace rubato::integrate {
 /// What a unit impulse along the coordinate s of a friction does,  M dv + G^T impulse = (ds/dq)^T,  G dv = 0,  with
 /// what sticks and locks among the rows of G.
 struct FrictionMobility {
-  Vector slope;            ///< ds/dq [n]
-  Vector motion;           ///< dv [n]
-  bool is_driven = false;  ///< a drive moves s
+  Vector slope;              ///< ds/dq [n]
+  Vector motion;             ///< dv [n]
+  std::vector<char> driven;  ///< by each drive of the model: whether it moves s
   /// The change of the rate of another, or of its own: the mobility w = (ds/dq) dv.
   double of(const FrictionMobility& other) const { return other.slope.dot(motion); }
 };
@@ -25,5 +25,11 @@ bool find_friction_mobilities(system::MechanismEquations& equations, const syste
 /// What a drive moves is not held: its rate is the drive's.
 /// @return one for each friction of the model, or nothing where a matrix cannot be factorised
 std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state);
+
+/// Which of the frictions drives hold at rest that stand still, now and for some time: what they carry nothing tells.
+/// @param ahead  that time [s]
+/// @return one for each friction of the model; none where a matrix cannot be factorised
+std::vector<char> frictions_held_by_drives(system::MechanismEquations& equations, const system::State& state,
+                                           double ahead);
 
 }  // namespace rubato::integrate

@@ -71,6 +71,7 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
   const double h = to.t - from.t;
   has_halfway_ = false;
   forget_balances();
+  if (stands_.size() != mechanism_.model().drives.size()) note_standing_drives(from.t);
   for (std::size_t i = 0; i < row_.size() + from.rubbing.size(); ++i) {
     if (!is_watched(i, from)) continue;
     double share = 2.0;

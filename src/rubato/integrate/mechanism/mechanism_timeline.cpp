@@ -105,9 +105,10 @@ bool MechanismTimeline::restart(system::State& state) {
   double energy_lost = 0.0;
   bool goes_on = false;
   if (has_drive_jump(state.t))
-    goes_on = project(state, energy_lost) && settle_new_velocities(equations_, state);
+    goes_on = project(state, energy_lost) && settle_new_velocities(equations_, state, ahead());
   else
-    goes_on = settle_friction(equations_, state, std::vector<char>(old.size(), 0));
+    goes_on = settle_friction(equations_, state, std::vector<char>(old.size(), 0), ahead());
+  note_standing_drives(state.t);
   note_friction(old, state);
   return goes_on && release(state);
 }
@@ -162,7 +163,7 @@ bool MechanismTimeline::release(system::State& state) {
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
     const std::vector<int> old = state.rubbing;
-    if (!settle_friction(equations_, state, std::vector<char>(old.size(), 0))) return false;
+    if (!settle_friction(equations_, state, std::vector<char>(old.size(), 0), ahead())) return false;
     note_friction(old, state);
   }
   return true;
@@ -172,13 +173,16 @@ bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state)
   if (lock < row_.size() && friction_of_[lock] >= 0 && state.phase[lock] == model::lock_open &&
       model::is_at_rest(state.rubbing[static_cast<std::size_t>(friction_of_[lock])]))
     return false;  // what sticks at its stop lies beyond it by round-off, and comes no nearer
-  if (lock >= row_.size() && (pulls(state.rubbing[lock - row_.size()]) || equations_.is_led(lock - row_.size())))
-    return false;
-  return lock >= row_.size() || !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
+  if (lock >= row_.size()) {
+    const std::size_t friction = lock - row_.size();
+    if (pulls(state.rubbing[friction]) || equations_.is_led(friction)) return false;
+    return state.rubbing[friction] != model::friction_free || !is_locked(mechanism_.model(), state, friction);
+  }
+  return !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
 }
 
 bool MechanismTimeline::has_rate(std::size_t i, const system::State& from) const {
-  if (i >= row_.size()) return from.rubbing[i - row_.size()] != model::friction_sticks;
+  if (i >= row_.size()) return model::sliding_direction(from.rubbing[i - row_.size()]) != 0.0;
   return row_[i] < 0 || from.phase[i] == model::lock_open;
 }
 
@@ -227,8 +231,10 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     if (!project(state, events_.back().energy_lost)) return Passage::fails;
     has_impact = true;
   }
-  const bool is_settled = has_impact ? settle_new_velocities(equations_, state)
-                                     : settle_friction(equations_, state, rubbing.candidates, rubbing.at_limit);
+  const bool is_settled = has_impact
+                              ? settle_new_velocities(equations_, state, ahead())
+                              : settle_friction(equations_, state, rubbing.candidates, ahead(), rubbing.at_limit);
+  note_standing_drives(state.t);
   note_friction(old, state);
   if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;
   shift_acceleration(equations_, state, shift);

@@ -30,6 +30,7 @@ struct LockEvent {
 ///                             along that at the start of the step
 ///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
 ///   pulls while others hold   nothing: they are watched
+///   held by drives that stand a drive that stood when it was left out moves
 ///
 /// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and
 /// the multipliers of equilibrium. A drive whose prescribed velocity jumps does the same: it gives the impulse, whose
@@ -76,6 +77,8 @@ class MechanismTimeline final : public Timeline {
   bool turns_away(std::size_t friction, system::State& state);
   /// Which frictions a step ended in: those that slide no more, and those that let go.
   Rubbing rubbing_after(const system::State& before, system::State& state);
+  /// Makes what drives held slide the way in which they begin to move it.
+  void slide_with_drives(std::size_t friction, system::State& state);
   /// Counts a transition of a guard.
   void count_transition(std::size_t guard, const system::State& state);
   /// Notes what friction did since `old`.
@@ -92,6 +95,11 @@ class MechanismTimeline final : public Timeline {
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
   bool release(system::State& state);
   bool has_drive_jump(double t) const;
+  /// Notes which drives stand, for the friction that they hold.
+  void note_standing_drives(double t);
+  bool has_started_drive(double t) const;
+  /// For which a drive that stands must stand to hold friction: a millionth of the run [s].
+  double ahead() const { return 1e6 * resolution_; }
   bool is_joint_switch(double t) const;  ///< the law of a joint may jump there
   /// Velocities, accelerations and multipliers that the constraints allow from now on, friction left out.
   bool project(system::State& state, double& energy_lost);
@@ -104,6 +112,7 @@ class MechanismTimeline final : public Timeline {
   std::vector<Index> row_;                            // of the constraint of each lock, or -1
   std::vector<int> friction_of_;                      // of the joint of each lock, or -1
   std::vector<double> padded_, padded_acceleration_;  // after a zero
+  std::vector<char> stands_;                          // of the drives, when friction was settled last
   std::array<Balanced, 4> balances_;
   std::size_t balance_count_ = 0;
   system::State halfway_, turning_;  // of the last step that first_crossing() looked at

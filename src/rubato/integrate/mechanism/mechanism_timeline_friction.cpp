@@ -7,6 +7,23 @@
 
 // What a step of a mechanism does to the friction in its joints.
 namespace rubato::integrate {
+
+void MechanismTimeline::note_standing_drives(double t) {
+  stands_.clear();
+  for (const auto& drive : mechanism_.model().drives)
+    stands_.push_back(model::derivatives(drive.law, t, model::Side::right).rate == 0.0);
+}
+
+bool MechanismTimeline::has_started_drive(double t) const {
+  constexpr double slow = 1e-6;  // of a radian or metre in the time of the run
+  const auto& drives = mechanism_.model().drives;
+  for (std::size_t k = 0; k < stands_.size(); ++k) {
+    const double rate = stands_[k] ? model::derivatives(drives[k].law, t, model::Side::left).rate : 0.0;
+    if (std::abs(rate) * 1e12 * resolution_ > slow) return true;
+  }
+  return false;
+}
+
 void MechanismTimeline::note_friction(const std::vector<int>& old, const system::State& state) {
   for (std::size_t i = 0; i < old.size(); ++i) {
     if (equations_.is_led(i)) continue;
@@ -24,12 +41,16 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
   for (std::size_t i = 0; i < state.rubbing.size(); ++i) {
     if (equations_.is_led(i)) continue;
     resting += model::is_at_rest(state.rubbing[i]) ? 1 : 0;
-    if (state.rubbing[i] == model::friction_free || pulls(state.rubbing[i])) continue;
+    if (!is_watched(row_.size() + i, before)) continue;
     const GuardValue now = guard(static_cast<Index>(row_.size() + i), before, state);
     if (now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0) reached.push_back(i);
   }
   result.has_changed = !reached.empty();
   for (const std::size_t i : reached) {
+    if (state.rubbing[i] == model::friction_free) {
+      slide_with_drives(i, state);
+      continue;
+    }
     const bool is_pair = mechanism_.model().frictions[i].partner >= 0;
     const bool has_stuck = state.rubbing[i] == model::friction_sticks;
     if (is_pair && !has_stuck && turns_away(i, state)) continue;
@@ -50,6 +71,18 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
   return result;
 }
 
+void MechanismTimeline::slide_with_drives(std::size_t i, system::State& state) {
+  const ConsistentStart moving = make_consistent(equations_, state, model::Side::left);
+  if (moving.is_consistent) state = moving.state;
+  equations_.go_to(state, model::Side::left);
+  if (const int other = mechanism_.model().frictions[i].partner; other < 0) {
+    state.rubbing[i] = equations_.friction_rate(i) > 0.0 ? model::friction_slides_up : model::friction_slides_down;
+  } else {
+    set_friction_phase(mechanism_.model(), state, i, model::friction_slides_up);
+    set_slip_floor(mechanism_.model(), state, i, model::slip_floor_share * equations_.slip_velocity(i));
+  }
+}
+
 bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
   constexpr double rest = 5.0 * model::slip_floor_share;  // what the floor may leave across
   const auto first = static_cast<Index>(i), second = static_cast<Index>(mechanism_.model().frictions[i].partner);
@@ -63,6 +96,7 @@ bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
 }
 
 GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State& state, const Vector& floors) {
+  if (state.rubbing[i] == model::friction_free) return {has_started_drive(state.t) ? -1.0 : 1.0, 0.0};
   if (state.rubbing[i] == model::friction_sticks) {
     const Balanced& now = balanced(state);
     if (!now.is_found)  // nothing goes with these phases
