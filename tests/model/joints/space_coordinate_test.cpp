@@ -23,8 +23,9 @@ SpaceCoordinate coordinate(Kind kind) {
   s.kind = kind;
   s.first = {testing::free_space_node(0), {0.3, -0.2, 0.4}};
   s.second = {testing::free_space_node(1), {-0.1, 0.5, 0.2}};
+  const Vector3 start(0.6, 0.8, 0.0);
   if (kind == Kind::angle)
-    s.row = model::TurnAngle{Vector3::UnitX(), Vector3::UnitY(), Vector3(0.6, 0.8, 0.0)};
+    s.row = model::TurnAngle{{Vector3::UnitX(), start}, {Vector3::UnitY(), start}};
   else if (kind == Kind::length)
     s.row = model::PointDistance{};
   else

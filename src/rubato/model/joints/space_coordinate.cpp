@@ -72,10 +72,6 @@ SpaceCoordinate path_along_thread(const SpaceCoordinate& angle, const numerics::
   return path;
 }
 
-TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second) {
-  return {first.axes.col(0), first.axes.col(1), second.axes.col(0)};
-}
-
 double nearest_turn(double angle, double known) {
   constexpr double turn = 2.0 * std::numbers::pi;
   return angle + turn * std::round((known - angle) / turn);

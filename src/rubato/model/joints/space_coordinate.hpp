@@ -56,9 +56,6 @@ struct SpaceCoordinate {
 SpaceCoordinate path_along_thread(const SpaceCoordinate& angle, const numerics::Vector3& axis, double lead,
                                   double radius);
 
-/// The angle about the third axis of two frames, as SpaceCoordinate counts it before `zero`.
-TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second);
-
 /// The angle that lies nearest to one that is known: angle + 2 pi k.
 double nearest_turn(double angle, double known);
 

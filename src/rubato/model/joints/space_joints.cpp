@@ -158,6 +158,11 @@ SpaceFrame frame_at(const SpaceNode& node, const double* q, const Vector3& at, c
   return {{node, back * (at - node.position(q))}, back * axes};
 }
 
+TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second) {
+  const Vector3 start = second.axes.col(0);
+  return {{first.axes.col(0), start}, {first.axes.col(1), start}};
+}
+
 std::unique_ptr<Joint> make_space_joint(SpaceJointKind kind, std::string name, const SpaceFrame& first,
                                         const SpaceFrame& second) {
   auto joint = std::make_unique<SpaceJoint>(std::move(name), first.point, second.point);
@@ -198,7 +203,7 @@ std::unique_ptr<Joint> make_space_screw(std::string name, const SpaceFrame& firs
   auto joint = std::make_unique<SpaceJoint>(std::move(name), first.point, second.point);
   add_line(*joint, first);
   add_parallel_axes(*joint, first, second);
-  joint->add_thread(first.axes.col(2), {first.axes.col(0), first.axes.col(1), second.axes.col(0)}, lead);
+  joint->add_thread(first.axes.col(2), turn_of(first, second), lead);
   return joint;
 }
 

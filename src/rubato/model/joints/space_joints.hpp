@@ -23,6 +23,9 @@ struct SpaceFrame {
 /// @param axis  not of length zero
 SpaceFrame frame_at(const SpaceNode& node, const double* q, const numerics::Vector3& at, const numerics::Vector3& axis);
 
+/// The angle by which the second frame has turned about the third axis of both, right-handed.
+TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second);
+
 enum class SpaceJointKind {
   rigid,        ///< nothing moves
   revolute,     ///< turns about the third axis

@@ -123,8 +123,8 @@ void add_row_slope(const PointDistance& row, const SpacePair& p, double weight, 
 
 void evaluate_row(const TurnAngle& row, const SpacePair& p, SpaceValue& out) {
   SpaceValue cosine, sine;
-  evaluate_row(Alignment{row.x, row.start}, p, cosine);
-  evaluate_row(Alignment{row.y, row.start}, p, sine);
+  evaluate_row(row.cosine, p, cosine);
+  evaluate_row(row.sine, p, sine);
   const double c = cosine.value, s = sine.value, square = c * c + s * s;
   out.value = std::atan2(s, c);
   out.gradient = (c * sine.gradient - s * cosine.gradient) / square;
@@ -133,11 +133,11 @@ void evaluate_row(const TurnAngle& row, const SpacePair& p, SpaceValue& out) {
 template <class Sum>
 void add_row_slope(const TurnAngle& row, const SpacePair& p, double weight, Sum& sum) {
   SpaceValue cosine, sine;
-  evaluate_row(Alignment{row.x, row.start}, p, cosine);
-  evaluate_row(Alignment{row.y, row.start}, p, sine);
+  evaluate_row(row.cosine, p, cosine);
+  evaluate_row(row.sine, p, sine);
   const double c = cosine.value, s = sine.value, square = c * c + s * s, share = weight / square;
-  add_row_slope(Alignment{row.y, row.start}, p, share * c, sum);
-  add_row_slope(Alignment{row.x, row.start}, p, -share * s, sum);
+  add_row_slope(row.sine, p, share * c, sum);
+  add_row_slope(row.cosine, p, -share * s, sum);
   const Vector12 turn = c * sine.gradient - s * cosine.gradient;
   sum += share * (sine.gradient * cosine.gradient.transpose() - cosine.gradient * sine.gradient.transpose());
   sum -= 2.0 * share / square * turn * (c * cosine.gradient + s * sine.gradient).transpose();
@@ -211,8 +211,8 @@ SpacePattern pattern_of(const SpaceRow& row, const SpacePoint& first, const Spac
 }
 
 double angle_of(const TurnAngle& row, const SpacePair& pair) {
-  const Vector3 start = pair.relative * row.start;
-  return std::atan2(row.y.dot(start), row.x.dot(start));
+  return std::atan2(row.sine.first.dot(pair.relative * row.sine.second),
+                    row.cosine.first.dot(pair.relative * row.cosine.second));
 }
 
 }  // namespace rubato::model

@@ -50,10 +50,10 @@ struct DistanceGap {
 };
 /// How far the points are apart, |p2 - p1| [m].
 struct PointDistance {};
-/// The angle by which the second node has turned about an axis that both share, right-handed about x cross y: from x of
-/// the first node to `start` of the second, in (-pi, pi] [rad]. Directions of length 1, x and y at a right angle.
+/// The angle by which the second node has turned about an axis, in (-pi, pi] [rad]: that of which two alignments are
+/// the cosine and the sine.
 struct TurnAngle {
-  numerics::Vector3 x, y, start;
+  Alignment cosine, sine;
 };
 
 using SpaceRow = std::variant<WorldGap, BodyGap, Alignment, DistanceGap, TurnAngle, PointDistance>;
