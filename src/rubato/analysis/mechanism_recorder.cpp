@@ -70,7 +70,7 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
   joints_.append_displacements(row_);
   reactions_.append(joints_.motion(), balanced_.multiplier, row_);
   equations_.go_to(balanced_, model::Side::right);
-  frictions_.append(equations_, balanced_.multiplier, row_);
+  frictions_.append(equations_, joints_.motion(), balanced_.multiplier, row_);
   laws_.append(joints_.motion(), row_);
   rows_->append(row_);
   ++count_;

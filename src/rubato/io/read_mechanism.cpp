@@ -158,8 +158,7 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
 std::string instead_of(const std::string& key, const std::string& type) {
   if (key != "friction") return {};
   const std::map<std::string, std::string> rows{{"spherical", "three revolute joints"},
-                                                {"universal", "two revolute joints"},
-                                                {"planar", "two prismatic joints and a revolute one"}};
+                                                {"universal", "two revolute joints"}};
   const auto row = rows.find(type);
   if (row == rows.end()) return "; nothing moves in it that could rub";
   return fmt::format("; take {} in a row, with small bodies between them, each with its own friction", row->second);
@@ -181,7 +180,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
-      {"friction", {"revolute", "prismatic", "cylindrical", "screw", "strut"}},
+      {"friction", {"revolute", "prismatic", "cylindrical", "planar", "screw", "strut"}},
       {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;

@@ -78,8 +78,9 @@ SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& fir
   return {SpaceCoordinate::Kind::angle, first.point, second.point, angle, counter, 0.0};
 }
 
-SpaceCoordinate way_between(const SpaceFrame& first, const SpaceFrame& second) {
-  return {SpaceCoordinate::Kind::displacement, first.point, second.point, BodyGap{first.axes.col(2)}, -1, 0.0};
+/// @param axis  of the first frame
+SpaceCoordinate way_between(const SpaceFrame& first, const SpaceFrame& second, Index axis) {
+  return {SpaceCoordinate::Kind::displacement, first.point, second.point, BodyGap{first.axes.col(axis)}, -1, 0.0};
 }
 
 /// All of the force of a hinge presses on its pin; of a slide what is across its way; of a screw the thread alone,
@@ -115,6 +116,13 @@ void take_collar_friction(MechanismAssembly& assembly, const JointDescription& j
                           const SpaceCoordinate& way, const SpaceCoordinate& angle) {
   const int along = take_friction(assembly, joint, built.part, way, {0, 2}, 1.0);
   assembly.mechanism.add_shared_friction(along, angle, rubbing_radius(assembly, joint, built.part));
+}
+
+/// Of a planar joint: its point rubs like a small foot, against its slip in both directions together.
+void take_foot_friction(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
+  const auto& [part, places, first, second] = built;
+  const int along = take_friction(assembly, joint, part, way_between(first, second, 0), {0, 1}, 1.0);
+  assembly.mechanism.add_shared_friction(along, way_between(first, second, 1), 1.0);
 }
 
 double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
@@ -206,11 +214,13 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   if (turns)
     take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical,
                     lead);
-  if (slides) take_coordinate(assembly, joint, built, way_between(first, second), joint.type == Type::prismatic, lead);
+  if (slides)
+    take_coordinate(assembly, joint, built, way_between(first, second, 2), joint.type == Type::prismatic, lead);
   if (joint.type == Type::cylindrical && joint.friction) {
     const auto& coordinates = mechanism.space_coordinates;
     take_collar_friction(assembly, joint, built, coordinates.back().s, coordinates[coordinates.size() - 2].s);
   }
+  if (joint.type == Type::planar && joint.friction) take_foot_friction(assembly, joint, built);
 }
 
 }  // namespace rubato::model
