@@ -66,6 +66,19 @@ TEST(PlanarFriction, StopsAThrownBlockInAStraightLineWhateverItsDirection) {
       }
 }
 
+// What a step leaves of the slip as it ends where the block stops is round-off of any direction, most of all where the
+// block turns. The shortest step is 1e-6 of the step.
+TEST(PlanarFriction, RestsWhereAStepEndsAsItStops) {
+  for (const double way : {0.0, 0.7, 2.5, -1.9}) {
+    const MechanismStudy ran(Block{.vx = std::cos(way), .vy = std::sin(way), .spin = 3.0}.text() +
+                             transient("0.01", 0.5));
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    ASSERT_EQ(ran.table("run.events").rows.size(), 1u);
+    EXPECT_NEAR(ran.at(0, "run.events", "time"), 1.0 / (coefficient * gravity), 1e-7);
+    EXPECT_LT(ran.table("run").rows.size(), 60u);
+  }
+}
+
 // The foot follows the load: N = m g + 10 t.
 TEST(PlanarFriction, FollowsTheForceAcrossThePlane) {
   for (const std::string& step : steps) {

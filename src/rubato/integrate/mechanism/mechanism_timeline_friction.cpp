@@ -87,9 +87,10 @@ bool MechanismTimeline::turns_away(std::size_t i, system::State& state) {
   constexpr double rest = 5.0 * model::slip_floor_share;  // what the floor may leave across
   const auto first = static_cast<Index>(i), second = static_cast<Index>(mechanism_.model().frictions[i].partner);
   equations_.go_to(state, model::Side::left);
-  const Eigen::Vector2d slip = equations_.slip_velocity(i);
-  const double before = std::hypot(state.stuck_at[first], state.stuck_at[second]) / model::slip_floor_share;
-  if (slip.norm() <= rest * before) return false;
+  const Eigen::Vector2d slip = equations_.slip_velocity(i), floor(state.stuck_at[first], state.stuck_at[second]);
+  const Eigen::Vector2d along = floor.normalized();
+  const Eigen::Vector2d across = slip - along.dot(slip) * along;  // what goes back is of the shortest step
+  if (across.norm() <= rest * floor.norm() / model::slip_floor_share) return false;
   state.stuck_at[first] = model::slip_floor_share * slip[0];
   state.stuck_at[second] = model::slip_floor_share * slip[1];
   return true;
