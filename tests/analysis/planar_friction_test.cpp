@@ -251,9 +251,10 @@ TEST(PlanarFriction, OfAFootBesideTheCentreIsAPivotOfTheSpin) {
 }
 
 TEST(PlanarFrictionFault, TakesNoRadius) {
-  EXPECT_THAT(verdict(replaced(Block{}.text() + transient("0.01", 1.0), "coefficient = 0.4",
-                               "coefficient = 0.4, radius = 0.1")),
-              HasSubstr("joint \"table\": friction: radius belongs to a revolute, cylindrical or screw joint"));
+  EXPECT_THAT(
+      verdict(
+          replaced(Block{}.text() + transient("0.01", 1.0), "coefficient = 0.4", "coefficient = 0.4, radius = 0.1")),
+      HasSubstr("joint \"table\": friction: radius belongs to a revolute, cylindrical, universal or screw joint"));
 }
 
 }  // namespace

@@ -211,20 +211,20 @@ TEST(ScrewFrictionFault, AsksForTheRadiusOfTheThread) {
   EXPECT_THAT(verdict(replaced(text, "radius = 0.02", "radius = 0.0")), HasSubstr("friction: radius must be positive"));
 }
 
-// Friction of other joints would be a vector of several freedoms.
-TEST(ScrewFrictionFault, SaysHowOtherJointsAreBuiltOfThoseThatRub) {
+// Friction of a ball would be a vector of three freedoms.
+TEST(ScrewFrictionFault, SaysHowABallIsBuiltOfJointsThatRub) {
   const std::string text = replaced(nut(locking, 0.0, "0"), "lead = 0.01\n", "");
   const auto says = [&](const std::string& of, const std::string& type, const std::string& instead) {
     EXPECT_THAT(
         verdict(replaced(of, "\"screw\"", "\"" + type + "\"")),
-        HasSubstr("\"friction\" belongs to a revolute, prismatic, cylindrical, planar, screw or strut joint, and "
-                  "this one is " +
-                  type + "; " + instead));
+        HasSubstr(
+            "\"friction\" belongs to a revolute, prismatic, cylindrical, universal, planar, screw or strut joint, and "
+            "this one is " +
+            type + "; " + instead));
   };
   const std::string row = " in a row, with small bodies between them, each with its own friction";
   const std::string no_axis = replaced(text, "axis = [0.0, 0.0, 1.0]\n", "");
   says(no_axis, "spherical", "take three revolute joints" + row);
-  says(text, "universal", "take two revolute joints" + row);
   says(no_axis, "rigid", "nothing moves in it that could rub");
 }
 

@@ -28,7 +28,7 @@ void JointFrictions::add(results::TableLayout& layout) const {
   const auto add_block = [&](const std::vector<std::size_t>& frictions, const std::string& variable, const char* unit,
                              const std::string& axes, const std::string& dimension) {
     std::vector<std::string> joints;
-    for (const std::size_t i : frictions) joints.push_back(mechanism_.model().frictions[i].name);
+    for (const std::size_t i : frictions) joints.push_back(mechanism_.model().frictions[i].label());
     if (!joints.empty())
       layout.blocks.push_back(
           {variable, unit, "what friction does to the second part of each joint" + axes, dimension, joints});

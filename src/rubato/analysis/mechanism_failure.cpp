@@ -58,14 +58,14 @@ std::string chattering_part(Index guard, const system::Mechanism& mechanism) {
   const auto& model = mechanism.model();
   const auto i = static_cast<std::size_t>(guard);
   if (i < model.locks.size()) return fmt::format("the lock of \"{}\"", model.locks[i].name);
-  return fmt::format("the friction of \"{}\"", model.frictions[i - model.locks.size()].name);
+  return fmt::format("the friction of \"{}\"", model.frictions[i - model.locks.size()].label());
 }
 
 std::string described(const integrate::LockEvent& event, const system::Mechanism& mechanism) {
   const auto& model = mechanism.model();
   const bool is_lock = event.friction < 0;
-  const std::string& name = is_lock ? model.locks[static_cast<std::size_t>(event.lock)].name
-                                    : model.frictions[static_cast<std::size_t>(event.friction)].name;
+  const std::string name = is_lock ? model.locks[static_cast<std::size_t>(event.lock)].name
+                                   : model.frictions[static_cast<std::size_t>(event.friction)].label();
   const char* what = is_lock ? (event.has_engaged ? "locks" : "lets go") : (event.has_engaged ? "sticks" : "slips");
   return fmt::format("\"{}\" ({} at t = {:.9g} s)", name, what, event.t);
 }

@@ -93,7 +93,7 @@ void write_events(const std::string& name, const std::vector<integrate::LockEven
   if (locks.empty() && mechanism.model().frictions.empty()) return;
   std::vector<std::string> joints;
   for (const auto& lock : locks) joints.push_back(lock.name);
-  for (const auto& friction : mechanism.model().frictions) joints.push_back(friction.name);
+  for (const auto& friction : mechanism.model().frictions) joints.push_back(friction.label());
   const auto rows = sink.open(
       {name,
        "events",

@@ -121,14 +121,14 @@ void report_events(const std::vector<integrate::LockEvent>& events, const system
                                      event.has_engaged ? "locks" : "lets go", event.t, energy_told(event)));
     } else if (++changes[static_cast<std::size_t>(event.friction)] <= most_told) {
       findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s",
-                                     mechanism.model().frictions[static_cast<std::size_t>(event.friction)].name,
+                                     mechanism.model().frictions[static_cast<std::size_t>(event.friction)].label(),
                                      event.has_engaged ? "sticks" : "slips", event.t));
     }
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
     if (changes[i] > most_told)
       findings.push_back(
-          fmt::format("\"{}\" sticks and slips {} times in all", mechanism.model().frictions[i].name, changes[i]));
+          fmt::format("\"{}\" sticks and slips {} times in all", mechanism.model().frictions[i].label(), changes[i]));
 }
 
 }  // namespace

@@ -128,8 +128,8 @@ LockDescription read_lock(TomlReader& reader) {
 /// A joint that turns takes the radius at which it rubs.
 FrictionDescription read_friction(TomlReader& reader, JointDescription::Type type) {
   const bool is_screw = type == JointDescription::Type::screw;
-  const bool turns =
-      is_screw || type == JointDescription::Type::revolute || type == JointDescription::Type::cylindrical;
+  const bool turns = is_screw || type == JointDescription::Type::revolute ||
+                     type == JointDescription::Type::cylindrical || type == JointDescription::Type::universal;
   FrictionDescription friction;
   friction.where = reader.where();
   friction.coefficient = reader.quantity("coefficient");
@@ -148,8 +148,9 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
                                    is_screw ? " / cos^2 of the lead angle" : ""));
   }
   if (!turns && friction.radius)
-    throw InvalidInput(friction.radius->where,
-                       fmt::format("{}: radius belongs to a revolute, cylindrical or screw joint", reader.what()));
+    throw InvalidInput(
+        friction.radius->where,
+        fmt::format("{}: radius belongs to a revolute, cylindrical, universal or screw joint", reader.what()));
   reader.finish();
   return friction;
 }
@@ -157,11 +158,8 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
 /// What rubs in a joint that takes no friction can be built of joints that do.
 std::string instead_of(const std::string& key, const std::string& type) {
   if (key != "friction") return {};
-  const std::map<std::string, std::string> rows{{"spherical", "three revolute joints"},
-                                                {"universal", "two revolute joints"}};
-  const auto row = rows.find(type);
-  if (row == rows.end()) return "; nothing moves in it that could rub";
-  return fmt::format("; take {} in a row, with small bodies between them, each with its own friction", row->second);
+  if (type != "spherical") return "; nothing moves in it that could rub";
+  return "; take three revolute joints in a row, with small bodies between them, each with its own friction";
 }
 
 /// The keys that belong to one type of joint each; others are refused with the types that take them.
@@ -180,7 +178,7 @@ void refuse_foreign_keys(TomlReader& reader, const std::string& type) {
       {"stiffness", of_one_coordinate},
       {"damping", of_one_coordinate},
       {"rest", of_one_coordinate},
-      {"friction", {"revolute", "prismatic", "cylindrical", "planar", "screw", "strut"}},
+      {"friction", {"revolute", "prismatic", "cylindrical", "universal", "planar", "screw", "strut"}},
       {"lock", of_one_coordinate}};
   for (const auto& [key, types] : takers) {
     if (!reader.has(key) || std::find(types.begin(), types.end(), type) != types.end()) continue;

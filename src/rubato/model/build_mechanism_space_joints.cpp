@@ -71,8 +71,8 @@ DrawnLine::End draw(Mechanism& mechanism, const SpacePoint& point) {
   return end;
 }
 
-SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& first, const SpaceFrame& second) {
-  const TurnAngle angle = turn_of(first, second);
+SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& first, const SpaceFrame& second,
+                              const TurnAngle& angle) {
   const Index counter = assembly.mechanism.add_turn_counter({first.point, second.point, angle});
   assembly.start.push_back(0.0);
   return {SpaceCoordinate::Kind::angle, first.point, second.point, angle, counter, 0.0};
@@ -123,6 +123,21 @@ void take_foot_friction(MechanismAssembly& assembly, const JointDescription& joi
   const auto& [part, places, first, second] = built;
   const int along = take_friction(assembly, joint, part, way_between(first, second, 0), {0, 1}, 1.0);
   assembly.mechanism.add_shared_friction(along, way_between(first, second, 1), 1.0);
+}
+
+/// Of a universal joint: each pin of its cross rubs by itself, pressed by all of the joint's force.
+void take_cross_friction(MechanismAssembly& assembly, const JointDescription& joint, const SpaceJointPlaces& built) {
+  const auto& [part, places, first, second] = built;
+  const auto turns = turns_of_cross(first, second);
+  const double radius = rubbing_radius(assembly, joint, part);
+  const int pin =
+      take_friction(assembly, joint, part, angle_between(assembly, first, second, turns[0]), {0, 3}, radius);
+  auto& frictions = assembly.mechanism.frictions;
+  JointFriction other = frictions[static_cast<std::size_t>(pin)];
+  frictions.back().pin = "first";
+  other.pin = "second";
+  other.s = angle_between(assembly, first, second, turns[1]);
+  assembly.mechanism.add_friction(std::move(other));
 }
 
 double lead_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
@@ -212,8 +227,8 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   const bool turns = joint.type == Type::revolute || joint.type == Type::cylindrical || joint.type == Type::screw;
   const bool slides = joint.type == Type::prismatic || joint.type == Type::cylindrical || joint.type == Type::screw;
   if (turns)
-    take_coordinate(assembly, joint, built, angle_between(assembly, first, second), joint.type != Type::cylindrical,
-                    lead);
+    take_coordinate(assembly, joint, built, angle_between(assembly, first, second, turn_of(first, second)),
+                    joint.type != Type::cylindrical, lead);
   if (slides)
     take_coordinate(assembly, joint, built, way_between(first, second, 2), joint.type == Type::prismatic, lead);
   if (joint.type == Type::cylindrical && joint.friction) {
@@ -221,6 +236,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
     take_collar_friction(assembly, joint, built, coordinates.back().s, coordinates[coordinates.size() - 2].s);
   }
   if (joint.type == Type::planar && joint.friction) take_foot_friction(assembly, joint, built);
+  if (joint.type == Type::universal && joint.friction) take_cross_friction(assembly, joint, built);
 }
 
 }  // namespace rubato::model

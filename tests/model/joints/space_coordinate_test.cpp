@@ -69,6 +69,33 @@ TEST(SpaceCoordinates, AreHeldWithConsistentDerivatives) {
   }
 }
 
+TEST(SpaceCoordinates, OfACrossAreHeldWithConsistentDerivatives) {
+  SpaceCoordinate s = coordinate(Kind::angle);
+  const model::SpaceFrame first{s.first}, second{s.second, numerics::Matrix3(Rotation(0.8, 0.36, -0.48, 0.0))};
+  for (const model::TurnAngle& angle : model::turns_of_cross(first, second)) {
+    s.row = angle;
+    const model::StickingJoint<SpaceCoordinate> stuck("stuck", s, 0);
+    for (const unsigned seed : {1u, 2u, 3u}) testing::expect_consistent_joint(stuck, SpaceMotion(2, seed, 0.5), 10.0);
+  }
+}
+
+// Turned in the first part by 0.3 rad about one pin, and on the cross by 0.5 rad about the other.
+TEST(SpaceCoordinates, OfACrossAreTheAnglesOfItsPins) {
+  const model::SpacePoint first{testing::free_space_node(0), Vector3::Zero()};
+  const model::SpacePoint second{testing::free_space_node(1), Vector3::Zero()};
+  std::vector<double> q(21, 0.0);  // of the ground and two nodes, quaternions from their fourth on
+  const Rotation turned =
+      Rotation(Eigen::AngleAxisd(0.3, Vector3::UnitX())) * Rotation(Eigen::AngleAxisd(0.5, Vector3::UnitY()));
+  q[10] = 1.0;
+  q[17] = turned.w();
+  q[18] = turned.x();
+  q[19] = turned.y();
+  q[20] = turned.z();
+  const auto angles = model::turns_of_cross({first}, {second});
+  EXPECT_NEAR(model::angle_of(angles[0], model::pair_of(q.data(), first, second)), 0.3, 1e-14);
+  EXPECT_NEAR(model::angle_of(angles[1], model::pair_of(q.data(), first, second)), 0.5, 1e-14);
+}
+
 /// Along a thread of radius 0.4 m whose helix rises by a third.
 SpaceCoordinate path() {
   return model::path_along_thread(coordinate(SpaceCoordinate::Kind::angle), Vector3(0.0, 0.6, 0.8),

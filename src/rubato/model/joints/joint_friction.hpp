@@ -35,8 +35,9 @@ inline bool is_at_rest(int phase) {
 ///
 /// The multipliers are those of the same instant.
 ///
-/// Where a joint slides in two directions at once (a cylindrical one along its axis and around it) two frictions share
-/// one limit. Their slip velocity u = (arm s') of both, [m/s], is that of the surfaces which rub, and
+/// Where a joint slides in two directions at once (a cylindrical one along its axis and around it, a planar one across
+/// its axis) two frictions share one limit. Their slip velocity u = (arm s') of both, [m/s], is that of the surfaces
+/// which rub, and
 ///
 ///   slides   the forces -u/|u| mu N arm on the two s; phase "slides up" of both, whatever the direction
 ///   sticks   both s = where they stopped, until the norm of both multipliers over their arms reaches mu N
@@ -44,6 +45,7 @@ inline bool is_at_rest(int phase) {
 /// The direction needs a floor where u passes through zero within a step that is not accepted: see slip_floor().
 struct JointFriction {
   std::string name;  ///< of the joint
+  std::string pin;   ///< of several that rub by themselves: "first" or "second"
   FreeCoordinate s;
   double coefficient = 0.0;    ///< mu [-]; of an angle mu times an arm [m]
   double preload = 0.0;        ///< [N]
@@ -54,6 +56,8 @@ struct JointFriction {
   double arm = 1.0;            ///< of a slip velocity over the rate of s, 1 or of an angle the radius [m]
   int partner = -1;            ///< the other of two that share a limit; the first of both leads
 
+  /// As results and messages call it.
+  std::string label() const { return pin.empty() ? name : name + "." + pin; }
   bool follows_reaction() const { return pressing_rows > 0; }
 };
 

@@ -163,6 +163,13 @@ TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second) {
   return {{first.axes.col(0), start}, {first.axes.col(1), start}};
 }
 
+std::array<TurnAngle, 2> turns_of_cross(const SpaceFrame& first, const SpaceFrame& second) {
+  const Vector3 pin1 = first.axes.col(0), pin2 = second.axes.col(1);
+  const TurnAngle of_cross{{first.axes.col(1), pin2}, {first.axes.col(2), pin2}};
+  const TurnAngle on_cross{{pin1, second.axes.col(0)}, {pin1, second.axes.col(2)}};
+  return {of_cross, on_cross};
+}
+
 std::unique_ptr<Joint> make_space_joint(SpaceJointKind kind, std::string name, const SpaceFrame& first,
                                         const SpaceFrame& second) {
   auto joint = std::make_unique<SpaceJoint>(std::move(name), first.point, second.point);

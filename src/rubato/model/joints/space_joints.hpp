@@ -3,6 +3,7 @@
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/space_rows.hpp>
 
+#include <array>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,10 @@ SpaceFrame frame_at(const SpaceNode& node, const double* q, const numerics::Vect
 
 /// The angle by which the second frame has turned about the third axis of both, right-handed.
 TurnAngle turn_of(const SpaceFrame& first, const SpaceFrame& second);
+
+/// The angles of a universal joint about its pins, the first axis of the first frame and the second axis of the second:
+/// that of the cross in the first part, and that of the second part on the cross, right-handed.
+std::array<TurnAngle, 2> turns_of_cross(const SpaceFrame& first, const SpaceFrame& second);
 
 enum class SpaceJointKind {
   rigid,        ///< nothing moves
