@@ -1,5 +1,6 @@
 #include <rubato/analysis/mechanism_failure.hpp>
 #include <rubato/core/error.hpp>
+#include <support/laid_studies.hpp>
 
 #include <support/mechanism_study.hpp>
 
@@ -258,6 +259,24 @@ TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
   EXPECT_THAT(told, HasSubstr("crawled: the last 2,000 steps were shorter than 1e-8 of the run; the last to change: "
                               "\"nut\" (lets go at t = 1.5 s), \"bearing\" (locks at t = 1 s);"));
   EXPECT_THAT(analysis::failure_of(report, mechanism, mechanism.start(), {}, ""), Not(HasSubstr("change")));
+}
+
+// Parts of structures that a mechanism would pass over.
+TEST(MechanismMessages, RefuseWhatMechanismsHaveNot) {
+  const std::string block = testing::block_in_guide(testing::in_plane, 0.0, "") + testing::transient("0.01", 0.1);
+  EXPECT_THAT(testing::verdict(block + "[[stop]]\nname = \"buffer\"\nbetween = [\"block.x\", \"ground\"]\ngap = 0.8\n"
+                                       "stiffness = 1e4\n"),
+              HasSubstr("a [[stop]] does not go with a mechanism"));
+  EXPECT_THAT(testing::verdict(block + "[[mass]]\nnode = \"block\"\nmass = 1.0\n"),
+              HasSubstr("a [[mass]] acts on nodes, and the study has none; add [[node]] or [nodes]; a body has its own "
+                        "mass: add to that, and to its inertia"));
+  EXPECT_THAT(testing::verdict(block + "[[support]]\nnode = \"block\"\nfix = [\"x\"]\n"),
+              HasSubstr("hold a body by a joint to \"ground\", of type \"rigid\" if it is fixed"));
+  EXPECT_THAT(
+      testing::verdict("[[coordinate]]\nname = \"m\"\nmass = 1.0\n[[beam]]\nnodes = [\"a\", \"b\"]\nsection = \"x\"\n"
+                       "material = \"y\"\n" +
+                       testing::transient("0.01", 0.1)),
+      HasSubstr("a [[beam]] acts on nodes, and the study has none"));
 }
 
 }  // namespace

@@ -103,8 +103,9 @@ std::string collapsed_strut(const system::Mechanism& mechanism, const system::St
 
 std::string failure_of(const integrate::MarchReport& report, const system::Mechanism& mechanism,
                        const system::State& state, const Transitions& transitions, const std::string& advice_on_step) {
+  const bool is_coordinate = report.step.outcome != integrate::StepOutcome::overdetermined;
   const std::string at =
-      report.step.worst >= 0
+      report.step.worst >= 0 && is_coordinate
           ? fmt::format(" (worst at \"{}\")", mechanism.coordinates()[static_cast<std::size_t>(report.step.worst)])
           : "";
   std::string what, remedy;
@@ -118,6 +119,13 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
       remedy =
           "look for a drive against a lock, for joints that leave no way to go on (a singular configuration), or allow "
           "smaller steps";
+      break;
+    case integrate::StepOutcome::overdetermined:
+      what = fmt::format("the joints and drives cannot all be satisfied: \"{}\" stays apart",
+                         mechanism.rows()[static_cast<std::size_t>(report.step.worst)]);
+      remedy =
+          "look for a drive where other joints leave no motion, and for two drives that ask for different motions; "
+          "`rubato check` names joints that repeat each other";
       break;
     case integrate::StepOutcome::singular:
       what = "the matrix of the step cannot be factorised";

@@ -127,6 +127,8 @@ std::string reason(const integrate::MarchReport& report, const TransientPlan& pl
       what = "the effective matrix of the step cannot be factorised";
       remedy = "look for a negative stiffness or damping, or take a smaller step";
       break;
+    case integrate::StepOutcome::overdetermined:  // of mechanisms only
+      break;
     case integrate::StepOutcome::too_small:
       what = "the error asked for a step below the smallest";
       remedy = plan.automatic ? advice_on_smallest(plan.automatic->plan, plan.duration) : "take a smaller step";

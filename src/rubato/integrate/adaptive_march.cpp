@@ -17,6 +17,7 @@ constexpr int most_event_tries = 60;     // bisection alone resolves 1e-12 of th
 TryOutcome outcome_of(StepOutcome failure) {
   switch (failure) {
     case StepOutcome::not_converged:
+    case StepOutcome::overdetermined:
       return TryOutcome::not_converged;
     case StepOutcome::singular:
       return TryOutcome::singular;
@@ -128,7 +129,8 @@ class Marcher {
     if (!has_tried(length)) return;
     bool is_event = false;
     if (plan_.locate_events) {
-      const double least = least_progress * std::min(wanted_, plan_.largest);
+      // A step of the resolution would be made of round-off.
+      const double least = std::max(least_progress * std::min(wanted_, plan_.largest), 10.0 * timeline_.resolution());
       const Crossing crossing = timeline_.first_crossing(*from_, to_, least / length.step);
       is_event = crossing.guard >= 0;
       if (is_event && !has_located(crossing, least, length)) return;
@@ -194,6 +196,7 @@ class Marcher {
       }
       const bool is_slow = i > 1 && high - low > 0.5 * before_last;
       if (!(at > low && at < high) || is_slow) at = 0.5 * (low + high);
+      at = std::max(at, std::min(least, 0.5 * (low + high)));
       before_last = last;
       last = high - low;
       length = length_of(at);

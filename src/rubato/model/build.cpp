@@ -22,6 +22,7 @@ class Builder {
       : description_(description), parameters_(parameters), negative_load_(negative_load) {}
 
   Model build() {
+    refuse_parts_without_nodes(description_);
     if (description_.matrices)
       take_matrices(*description_.matrices);
     else

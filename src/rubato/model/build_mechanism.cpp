@@ -1,4 +1,5 @@
 #include <rubato/model/build_mechanism.hpp>
+#include <rubato/model/build_parts.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -23,6 +24,9 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (!d.sliders.empty())
     refuse(d.sliders.front().where, "a [[slider]]",
            "give a joint friction, or take a joint of type \"strut\" with friction");
+  if (!d.stops.empty())
+    refuse(d.stops.front().where, "a [[stop]]",
+           "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (const auto* modal = std::get_if<ModalDamping>(&d.damping)) refuse(modal->where, "[damping]", "take a [[damper]]");
   if (const auto* rayleigh = std::get_if<RayleighDamping>(&d.damping))
@@ -37,6 +41,10 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (!d.structure.trusses.empty())
     refuse(d.structure.trusses.front().where, "a [[truss]]",
            "take a joint of type \"distance\" or \"strut\", or a beam");
+  for (const BeamDescription& beam : d.structure.beams)
+    if (!beam.release[0].empty() || !beam.release[1].empty())
+      refuse(beam.release_where, "\"release\" of a beam",
+             "end the beam at a node of its own and join both nodes by a joint of type \"revolute\"");
   for (const BeamDescription& beam : d.structure.beams)
     if (beam.formulation != BeamDescription::Formulation::geometrically_exact)
       refuse(beam.where, fmt::format("the beam from \"{}\" to \"{}\"", beam.nodes[0], beam.nodes[1]),
@@ -64,6 +72,7 @@ bool is_mechanism(const ModelDescription& description) {
 }
 
 Mechanism build_mechanism(const ModelDescription& description, const numerics::Parameters& parameters) {
+  refuse_parts_without_nodes(description);
   refuse_foreign_parts(description);
   MechanismAssembly assembly(description, parameters);
   Mechanism& mechanism = assembly.mechanism;

@@ -30,6 +30,10 @@ Damping build_damping(const DampingDescription& description, Index n, const nume
 /// Where damping is described; of no damping, nowhere.
 Location where_of(const DampingDescription& description);
 
+/// Throws InvalidInput where beams, masses or supports have no node to act on: a study without nodes would pass them
+/// over.
+void refuse_parts_without_nodes(const ModelDescription& description);
+
 /// Throws InvalidInput for a mass matrix with a diagonal entry that is missing or not positive.
 void require_masses(const MatricesDescription& matrices);
 /// The matrices, symmetric to the last bit. Throws InvalidInput where their sizes differ.

@@ -101,7 +101,7 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
     std::fill(first, first + joints_[j]->rows(), 0.0);
   }
   // An open lock says nothing: multiplier = 0.
-  const double part = share / (weights.constraint > 0.0 ? weights.constraint : weights.mass);
+  const double part = share_of_rows_ = share / (weights.constraint > 0.0 ? weights.constraint : weights.mass);
   for (std::size_t r = 0; r < row_seen_.size(); ++r)
     values[row_slot_[r]] -= row_seen_[r] > 0.0 ? part * row_seen_[r] : 1.0;
 }
@@ -129,6 +129,18 @@ std::vector<Index> MechanismEquations::redundant_rows(double left) const {
       rows.push_back(row);
   }
   return rows;
+}
+
+Index MechanismEquations::worst_leak(const Vector& correction, double& apart) const {
+  Index worst = -1;
+  apart = 0.0;
+  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
+    const double leak = share_of_rows_ * row_seen_[r] * std::abs(correction[static_cast<Index>(r)]);
+    if (leak <= apart) continue;
+    apart = leak;
+    worst = static_cast<Index>(r);
+  }
+  return worst;
 }
 
 int MechanismEquations::hardly_held_rows() const {

@@ -54,6 +54,9 @@ class MechanismEquations {
   /// elimination of everything that they join is round-off.
   /// @param left  the share of a row that counts as nothing; E is 1e-10. Rows at an angle leave its square.
   std::vector<Index> redundant_rows(double left = 1e-8) const;
+  /// The row that E lets stay apart most after a correction of the multipliers, and by how much [m], [rad].
+  /// @param correction  as solve() wrote it [c]
+  Index worst_leak(const Vector& correction, double& apart) const;
   /// How many rows leave so little that E weighs a tenth and more: redundant, or in a configuration where they are.
   int hardly_held_rows() const;
   /// Whether the matrix is symmetric whatever the state: in space it is not.
@@ -87,6 +90,11 @@ class MechanismEquations {
   double friction_force(std::size_t friction, const Vector& multiplier) const;
   /// What friction can hold: mu N [N] or [N m].
   double friction_limit(std::size_t friction, const Vector& multiplier) const;
+  /// Of a run of this length [s]: sets what negligible_friction() is.
+  void set_duration(double duration);
+  /// A friction that, alone on its coordinate, would move it by a billionth of the model's size (of a radian) in the
+  /// run [N], [N m]: what joints that nothing presses hold is round-off.
+  double negligible_friction(std::size_t friction) const { return negligible_.empty() ? 0.0 : negligible_[friction]; }
   /// What is to be compared with it: the size of friction_force(), of two that share a limit that of both [N], [N m].
   double friction_size(std::size_t friction, const Vector& multiplier) const;
   /// Whether another friction, which shares its limit, leads this one.
@@ -156,10 +164,12 @@ class MechanismEquations {
   std::vector<FrictionPlace> friction_places_;
   std::vector<int> mass_slot_, row_slot_;
   std::vector<double> mass_value_, inverse_mass_;  // M by entry; of its diagonal [n]
+  double share_of_rows_ = 0.0;                     // E over row_seen_
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
   std::vector<double> local_, matrix_, velocity_, acceleration_;
-  Vector excess_;  // of the reactions that friction follows, over the multipliers [c]
+  std::vector<double> negligible_;  // of each friction
+  Vector excess_;                   // of the reactions that friction follows, over the multipliers [c]
   model::Motion motion_;
   numerics::KktFactor factor_;
   int factorisations_ = 0;

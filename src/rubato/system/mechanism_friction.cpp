@@ -19,6 +19,24 @@ void MechanismEquations::exceed_multipliers(const Vector& lag, double share) {
   if (!mechanism_.model().frictions.empty()) excess_ = share * lag;
 }
 
+void MechanismEquations::set_duration(double duration) {
+  constexpr double nothing = 1e-10;
+  const Vector& q = mechanism_.start().q;
+  const double size = 1.0 + (q.size() > 0 ? q.cwiseAbs().maxCoeff() : 0.0);
+  negligible_.clear();
+  const auto& frictions = mechanism_.model().frictions;
+  for (std::size_t i = 0; i < frictions.size(); ++i) {
+    double slope[most_friction_places], mobility = 0.0;
+    frictions[i].s.slope(q.data(), slope);
+    const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[i].joint)];
+    for (std::size_t k = 0; k < place.place.size(); ++k)
+      mobility +=
+          slope[place.local[k]] * slope[place.local[k]] * inverse_mass_[static_cast<std::size_t>(place.place[k])];
+    const double way = nothing * (frictions[i].s.is_angle() ? 1.0 : size);
+    negligible_.push_back(mobility > 0.0 ? 2.0 * way / (duration * duration * mobility) : 0.0);
+  }
+}
+
 double MechanismEquations::friction_limit(std::size_t i, const Vector& multiplier) const {
   const auto& friction = mechanism_.model().frictions[i];
   return friction.coefficient *

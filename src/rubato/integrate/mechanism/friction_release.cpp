@@ -10,7 +10,7 @@ namespace rubato::integrate {
 namespace {
 
 // Of what a friction holds:
-constexpr double round_off = 1e-9;
+constexpr double round_off = 2e-10;
 constexpr double clearly = 1e-7;  // below the limit
 
 /// Lets two frictions that share a limit go from rest, in the direction d in which they then slip: with the
@@ -102,7 +102,8 @@ bool goes_backward(system::MechanismEquations& equations, const system::State& s
 double excess_of_limit(const system::MechanismEquations& equations, const system::State& state, std::size_t friction,
                        bool at_limit) {
   const double held = equations.friction_size(friction, state.multiplier);
-  return held - equations.friction_limit(friction, state.multiplier) - (at_limit ? -clearly : round_off) * held;
+  const double excess = held - equations.friction_limit(friction, state.multiplier);
+  return at_limit ? excess + clearly * held : excess - round_off * held - equations.negligible_friction(friction);
 }
 
 bool let_held_pull(system::MechanismEquations& equations, system::State& state, std::vector<char>& held) {

@@ -100,6 +100,9 @@ class MechanismStepper final : public Stepper {
         travel_ += force_;
       }
       if (ratio * before <= tolerance_) {
+        double apart = 0.0;
+        const Index worst = equations_.worst_leak(constraint_, apart);
+        if (apart > most_apart * (1.0 + from.q.cwiseAbs().maxCoeff())) return {StepOutcome::overdetermined, worst};
         // Where rows repeat each other always, those that do so at one time only are not told apart from them.
         const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.hardly_held_rows() == 0;
         return is_held ? finish(from, h, is_placed, to) : fault(StepOutcome::singular);
@@ -257,6 +260,7 @@ class MechanismStepper final : public Stepper {
   static constexpr double negligible = 1e-2;  // of the tolerance
   static constexpr double safety = 10.0;      // on the measured share that a first correction leaves
   static constexpr double growth = 1.2;       // of that share in each step that relies on it
+  static constexpr double most_apart = 1e-8;  // of the size, that constraints may stay apart
   static constexpr double noise = 1e-4;       // of the tolerance: corrections that need not shrink
   static constexpr double foreign = 1e-2;     // of the momentum of a projection: what is no impulse of constraints
 

@@ -30,6 +30,7 @@ MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double 
       right_(mechanism.size()),
       padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0),
       padded_acceleration_(padded_) {
+  equations_.set_duration(1e12 * resolution);
   transitions_.resize(mechanism.model().locks.size() + mechanism.model().frictions.size());
   for (const auto& lock : mechanism.model().locks)
     row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);

@@ -103,7 +103,10 @@ GuardValue MechanismTimeline::friction_guard(std::size_t i, const system::State&
     if (!now.is_found)  // nothing goes with these phases
       return {-std::abs(equations_.friction_limit(i, state.multiplier)), 0.0};
     const Vector& multiplier = now.state.multiplier;
-    return {equations_.friction_limit(i, multiplier) - equations_.friction_size(i, multiplier), 0.0};
+    // Beyond what counts as no excess when it is decided that it sticks: joints may be at their limits for long.
+    constexpr double clearly = 1e-9;
+    const double beyond = clearly * equations_.friction_size(i, multiplier) + 2.0 * equations_.negligible_friction(i);
+    return {equations_.friction_limit(i, multiplier) + beyond - equations_.friction_size(i, multiplier), 0.0};
   }
   if (const int other = mechanism_.model().frictions[i].partner; other >= 0) {
     const Eigen::Vector2d way = Eigen::Vector2d(floors[static_cast<Index>(i)], floors[other]).normalized();
