@@ -85,6 +85,11 @@ std::string last_to_change(std::span<const integrate::LockEvent> events, const s
   return told.empty() ? "" : fmt::format("; the last to change: {}", fmt::join(told, ", "));
 }
 
+bool has_followed_reactions(const model::Mechanism& model) {
+  return std::any_of(model.frictions.begin(), model.frictions.end(),
+                     [](const model::JointFriction& friction) { return friction.follows_reaction(); });
+}
+
 /// A strut whose ends have all but met, where its direction is lost; empty: none.
 std::string collapsed_strut(const system::Mechanism& mechanism, const system::State& state) {
   constexpr double share = 1e-3;  // of its length at the start
@@ -146,13 +151,20 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
     case integrate::StepOutcome::no_way_on:
       if (transitions.chattering >= 0) {
         what = chattering_part(transitions.chattering, mechanism) + " changed a hundred times, and nothing moved";
+        const bool is_lock = static_cast<std::size_t>(transitions.chattering) < mechanism.model().locks.size();
         remedy =
-            "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, or take "
-            "\"friction\" in its place), and for a load that jumps as the joint begins to move";
+            is_lock
+                ? "what is elastic rattles on a rigid stop: give the lock a stiffness and damping, or take a method "
+                  "that damps more, { name = \"generalized_alpha\", rho_inf = 0.3 }"
+                : "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, "
+                  "or take \"friction\" in its place), for a load that jumps as the joint begins to move, and for "
+                  "more than six dry joints at rest, of which some follow reactions (take a preload for these)";
         break;
       }
       what = "no velocities and accelerations were found that the joints and locks allow from then on";
       remedy = "look for a drive against a lock, or for locks and drives that contradict each other there";
+      if (has_followed_reactions(mechanism.model()))
+        remedy += "; or the friction of joints that press each other leaves no way: take a preload for some of them";
       break;
     case integrate::StepOutcome::accepted:
       break;

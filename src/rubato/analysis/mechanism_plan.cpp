@@ -228,9 +228,11 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, dou
   equations.set_duration(duration);
   refuse_unknown_reactions(where, equations, state);
   if (!integrate::settle_new_velocities(equations, state, 1e-6 * duration))
-    throw InvalidInput(where,
-                       "no accelerations were found at the start that go with the friction of the joints: with "
-                       "so large a coefficient their reactions grow without bound; take a smaller one");
+    throw InvalidInput(
+        where,
+        "no accelerations were found at the start that go with the friction of the joints: with "
+        "so large a coefficient their reactions grow without bound; take a smaller one, or a preload for "
+        "some of them");
 }
 
 /// A drive, or joints that had to move, may put a coordinate beyond its lock, which was meant to be reached.

@@ -160,7 +160,7 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
   run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
   run.warnings = plan.warnings;
-  if (march.has_equal_steps() && report.failed > 0)
+  if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
     run.warnings.push_back(fmt::format(
         "Newton's method failed in {} of the equal steps, and was given shorter ones from there to the next "
         "event, the shortest of {:.3g} s: {} steps instead of {:.0f}; take a shorter step, or step = {{ "
