@@ -92,8 +92,8 @@ class MechanismEquations {
   double friction_limit(std::size_t friction, const Vector& multiplier) const;
   /// Of a run of this length [s]: sets what negligible_friction() is.
   void set_duration(double duration);
-  /// A friction that, alone on its coordinate, would move it by a billionth of the model's size (of a radian) in the
-  /// run [N], [N m]: what joints that nothing presses hold is round-off.
+  /// A friction that, alone on its coordinate, would move it by 1e-10 of the model's size (of a radian) in the run
+  /// [N], [N m]: what joints that nothing presses hold is round-off.
   double negligible_friction(std::size_t friction) const { return negligible_.empty() ? 0.0 : negligible_[friction]; }
   /// What is to be compared with it: the size of friction_force(), of two that share a limit that of both [N], [N m].
   double friction_size(std::size_t friction, const Vector& multiplier) const;

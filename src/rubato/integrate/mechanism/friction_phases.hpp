@@ -14,7 +14,9 @@ namespace rubato::integrate {
 /// again; one that would then move against its way is held. Joints that stick already are looked at like candidates;
 /// those that slide go on. What goes, but cannot since others hold it (two dry hinges on one axis, of which one alone
 /// is not strong enough), pulls; what pulls already is a candidate again. One that a rigid lock of its own joint holds
-/// is left out, and is a candidate when that lets go; so is one that drives hold which stand still.
+/// is left out, and is a candidate when that lets go; so is one that drives hold which stand still. Where the friction
+/// of one that rests may change the limit of another all ways are tried first (choose_frictions()); where none of them
+/// is one, what was decided one by one stands, as it does for more than six.
 /// @param candidates  of all joints with friction
 /// @param ahead       for which a drive that stands must stand to hold joints [s]
 /// @param at_limit    those that sticking took to their limit just now, or that pulled: they stick only if they are

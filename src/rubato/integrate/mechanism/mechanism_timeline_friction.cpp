@@ -73,7 +73,8 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
 
 void MechanismTimeline::slide_with_drives(std::size_t i, system::State& state) {
   const ConsistentStart moving = make_consistent(equations_, state, model::Side::left);
-  if (moving.is_consistent) state = moving.state;
+  if (!moving.is_consistent) return;  // then it is decided what it does, or found that nothing goes on
+  state = moving.state;
   equations_.go_to(state, model::Side::left);
   if (const int other = mechanism_.model().frictions[i].partner; other < 0) {
     state.rubbing[i] = equations_.friction_rate(i) > 0.0 ? model::friction_slides_up : model::friction_slides_down;
