@@ -31,6 +31,7 @@ void visit_structure(const model::StructureDescription& structure, const Take& t
     if (material.poisson) take(*material.poisson);
     if (material.shear_modulus) take(*material.shear_modulus);
     take(material.density);
+    if (material.retardation_time) take(*material.retardation_time);
   }
   for (const auto& section : structure.sections) {
     take(section.area);

@@ -28,9 +28,9 @@ void refuse_foreign_parts(const ModelDescription& d) {
     refuse(d.stops.front().where, "a [[stop]]",
            "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
-  if (const auto* modal = std::get_if<ModalDamping>(&d.damping)) refuse(modal->where, "[damping]", "take a [[damper]]");
-  if (const auto* rayleigh = std::get_if<RayleighDamping>(&d.damping))
-    refuse(rayleigh->where, "[damping]", "take a [[damper]]");
+  if (!std::holds_alternative<std::monostate>(d.damping))
+    refuse(where_of(d.damping), "[damping]",
+           "give the [[material]] of its beams a \"retardation_time\" [s], or take a [[damper]]");
   if (!d.distributed_forces.empty())
     refuse(d.distributed_forces.front().where, "a [[distributed_force]]", "apply forces at nodes");
   if (!d.displacements.empty())

@@ -51,9 +51,12 @@ void take_plane_beam(MechanismAssembly& assembly, const Beam& beam) {
     const auto& numbers = mechanism.nodes[static_cast<std::size_t>(node)].numbers;
     return std::array<double, 3>{numbers[0], numbers[1], numbers[2]};
   };
-  mechanism.elements.push_back(
-      make_plane_beam(beam.name, mechanism.plane_node(beam.first), mechanism.plane_node(beam.second), at(beam.first),
-                      at(beam.second), {p.young * p.area, p.shear_modulus * p.shear_area_y, p.young * p.inertia_z}));
+  const PlaneNode first = mechanism.plane_node(beam.first), second = mechanism.plane_node(beam.second);
+  const PlaneSection section{p.young * p.area, p.shear_modulus * p.shear_area_y, p.young * p.inertia_z};
+  mechanism.elements.push_back(make_plane_beam(beam.name, first, second, at(beam.first), at(beam.second), section));
+  if (p.retardation_time > 0.0)
+    mechanism.elements.push_back(make_viscous_plane_beam(beam.name, first, second, at(beam.first), at(beam.second),
+                                                         section, p.retardation_time));
   for (const std::size_t axis : plane_axes)
     take_mass(assembly, beam, axis, p.density * (axis == 5 ? p.inertia_z : p.area) * beam.length);
 }
@@ -66,10 +69,13 @@ void take_space_beam(MechanismAssembly& assembly, const Beam& beam, const Axis& 
   const LineProperties& p = beam.properties;
   const Matrix3 axes =
       local_axes(assembly.position(beam.second) - assembly.position(beam.first), orientation).transpose();
-  mechanism.elements.push_back(make_exact_beam_space(
-      beam.name, mechanism.space_node(beam.first), mechanism.space_node(beam.second), q.data(), axes, axes,
-      {{p.young * p.area, p.shear_modulus * p.shear_area_y, p.shear_modulus * p.shear_area_z},
-       {p.shear_modulus * p.torsion, p.young * p.inertia_y, p.young * p.inertia_z}}));
+  const SpaceNode first = mechanism.space_node(beam.first), second = mechanism.space_node(beam.second);
+  const SpaceBeamSection section{{p.young * p.area, p.shear_modulus * p.shear_area_y, p.shear_modulus * p.shear_area_z},
+                                 {p.shear_modulus * p.torsion, p.young * p.inertia_y, p.young * p.inertia_z}};
+  mechanism.elements.push_back(make_exact_beam_space(beam.name, first, second, q.data(), axes, axes, section));
+  if (p.retardation_time > 0.0)
+    mechanism.elements.push_back(
+        make_viscous_beam_space(beam.name, first, second, q.data(), axes, axes, section, p.retardation_time));
   for (std::size_t axis = 0; axis < 3; ++axis) take_mass(assembly, beam, axis, p.density * p.area * beam.length);
   const Axis second_moments(p.inertia_y + p.inertia_z, p.inertia_y, p.inertia_z);
   const Matrix3 half = axes * (0.5 * p.density * beam.length * second_moments).asDiagonal() * axes.transpose();

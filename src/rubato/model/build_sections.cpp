@@ -1,3 +1,4 @@
+#include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_sections.hpp>
 
 #include <fmt/format.h>
@@ -18,8 +19,11 @@ double shear_factor(const Quantity& quantity, const Parameters& parameters, cons
 
 Material build_material(const MaterialDescription& material, const Parameters& parameters) {
   const std::string part = fmt::format("material \"{}\": ", material.name);
-  Material values{positive(material.young, parameters, part + "young"), 0.0,
-                  positive(material.density, parameters, part + "density")};
+  Material values;
+  values.young = positive(material.young, parameters, part + "young");
+  values.density = positive(material.density, parameters, part + "density");
+  if (material.retardation_time)
+    values.retardation_time = at_least_zero(*material.retardation_time, parameters, part + "retardation_time");
   if (material.poisson && material.shear_modulus)
     throw InvalidInput(material.shear_modulus->where,
                        part + "\"poisson\" and \"shear_modulus\" say the same; keep one");

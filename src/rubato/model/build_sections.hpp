@@ -10,6 +10,7 @@ namespace rubato::model {
 
 struct Material {
   double young = 0.0, shear_modulus = 0.0, density = 0.0;  ///< shear_modulus 0: not given [Pa], [Pa], [kg/m3]
+  double retardation_time = 0.0;                           ///< [s]
 };
 
 /// Zero where it is not given [m2], [m4], [-].

@@ -103,6 +103,7 @@ class StructureBuilder {
     p.lumped_mass = line.lumped_mass;
     p.young = material.young;
     p.density = material.density;
+    p.retardation_time = material.retardation_time;
     p.shear_modulus = material.shear_modulus;
     p.area = section.area;
     return p;

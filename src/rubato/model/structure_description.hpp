@@ -20,10 +20,11 @@ struct NodeDescription {
 
 struct MaterialDescription {
   std::string name;
-  Quantity young;                         ///< E [Pa]
-  std::optional<Quantity> poisson;        ///< nu [-]; gives G = E / (2 (1 + nu))
-  std::optional<Quantity> shear_modulus;  ///< G [Pa], instead
-  Quantity density;                       ///< [kg/m3]
+  Quantity young;                            ///< E [Pa]
+  std::optional<Quantity> poisson;           ///< nu [-]; gives G = E / (2 (1 + nu))
+  std::optional<Quantity> shear_modulus;     ///< G [Pa], instead
+  Quantity density;                          ///< [kg/m3]
+  std::optional<Quantity> retardation_time;  ///< tau [s]: stress = E (strain + tau strain rate); none: 0
   Location where;
 };
 

@@ -31,10 +31,11 @@ SparseMatrix from_elements(Index n, const std::vector<model::LinearElement>& ele
 }
 
 /// Adds the matrices of beams and trusses, row by row; rows of what is fixed fall away.
-void add_structure(const model::Structure& structure, Triplets& mass, Triplets& stiffness) {
+void add_structure(const model::Structure& structure, Triplets& mass, Triplets& damping, Triplets& stiffness) {
   model::ElementEquations equations;
   for (const auto& element : structure.elements) {
     model::equations_of(structure, element, equations);
+    const double retardation = structure.properties[static_cast<std::size_t>(element.properties)].retardation_time;
     for (int j = 0; j < equations.size; ++j) {
       const Index column = equations.place[static_cast<std::size_t>(j)];
       if (column == ground) continue;
@@ -42,6 +43,8 @@ void add_structure(const model::Structure& structure, Triplets& mass, Triplets& 
         const Index row = equations.place[static_cast<std::size_t>(i)];
         if (row == ground) continue;
         if (equations.stiffness(i, j) != 0.0) stiffness.emplace_back(row, column, equations.stiffness(i, j));
+        if (retardation * equations.stiffness(i, j) != 0.0)
+          damping.emplace_back(row, column, retardation * equations.stiffness(i, j));
         if (equations.mass(i, j) != 0.0) mass.emplace_back(row, column, equations.mass(i, j));
       }
     }
@@ -181,12 +184,13 @@ Loads loads_of(const model::Model& model, const SparseMatrix& mass) {
 LocallyNonlinear assemble(const model::Model& model) {
   const Index n = model.size();
   LocallyNonlinear::Parts parts;
+  Triplets damping;
   if (model.matrices) {
     parts.mass = model.matrices->mass;
     parts.stiffness = model.matrices->stiffness;
   } else {
     Triplets mass, stiffness;
-    add_structure(model.structure, mass, stiffness);
+    add_structure(model.structure, mass, damping, stiffness);
     for (Index i = 0; i < n; ++i)
       if (model.mass[i] != 0.0 || model.structure.is_empty()) mass.emplace_back(i, i, model.mass[i]);
     parts.mass = from_triplets(n, mass);
@@ -196,7 +200,8 @@ LocallyNonlinear assemble(const model::Model& model) {
   const bool has_releases =
       std::any_of(properties.begin(), properties.end(), [](const auto& p) { return p.released != 0; });
   require_positive_definite(parts.mass, model.coordinates, !model.matrices && !has_releases);
-  parts.damping = damping_matrix(model, parts.mass, parts.stiffness) + from_elements(n, model.dashpots);
+  parts.damping =
+      damping_matrix(model, parts.mass, parts.stiffness) + from_elements(n, model.dashpots, std::move(damping));
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
   parts.sliders = model.sliders;

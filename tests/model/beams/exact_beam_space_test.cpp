@@ -104,5 +104,49 @@ TEST(ExactBeamInSpace, LooksTheSameFromEitherEnd) {
   }
 }
 
+std::unique_ptr<model::Element> viscous_beam() {
+  SpaceMotion at(2, 3);
+  (void)straight_beam(at);
+  return model::make_viscous_beam_space("beam", free_space_node(0), free_space_node(1), at.q.data(),
+                                        Matrix3::Identity(), Matrix3::Identity(), section, 0.3);
+}
+
+TEST(ExactBeamInSpace, OfAViscousMaterialHasTheSlopesOfItsForces) {
+  for (unsigned seed = 1; seed < 8; ++seed) {
+    const SpaceMotion bent(2, seed + 20, 0.8);
+    testing::expect_consistent_tangent(*viscous_beam(), bent, 100.0);
+    testing::expect_consistent_damping(*viscous_beam(), bent, 100.0);
+  }
+}
+
+// The force of the elastic beam grows by tau K v where there is no stress, since its strains alone change it.
+TEST(ExactBeamInSpace, OfAViscousMaterialResistsWhereItIsStraightLikeItsStiffness) {
+  SpaceMotion at(2, 3);
+  const auto elastic = straight_beam(at);
+  std::vector<double> force(12), stiffness(144);
+  elastic->tangent(at.motion(), 1.0, 0.0, force.data(), stiffness.data());
+  viscous_beam()->force(at.motion(), force.data());
+  for (std::size_t i = 0; i < 12; ++i) {
+    double expected = 0.0;
+    for (std::size_t j = 0; j < 12; ++j) expected += 0.3 * stiffness[i * 12 + j] * at.padded[1 + j];
+    EXPECT_NEAR(force[i], expected, 1e-12) << i;
+  }
+}
+
+TEST(ExactBeamInSpace, OfAViscousMaterialTurnsAndTravelsFreely) {
+  SpaceMotion bent(2, 9, 0.6);
+  const Vector3 speed(5.0, -7.0, 2.0), spin(2.0, 1.0, -3.0);
+  for (std::size_t node = 0; node < 2; ++node) {
+    const double* q = bent.q.data() + 7 * (node + 1);
+    const Vector3 velocity = speed + spin.cross(Vector3(q[0], q[1], q[2]));
+    const Vector3 turning = numerics::Rotation(q[3], q[4], q[5], q[6]).conjugate() * spin;
+    for (std::size_t i = 0; i < 3; ++i) {
+      bent.padded[1 + 6 * node + i] = velocity[Index(i)];
+      bent.padded[4 + 6 * node + i] = turning[Index(i)];
+    }
+  }
+  for (const double force : force_on(*viscous_beam(), bent)) EXPECT_NEAR(force, 0.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace rubato

@@ -32,11 +32,12 @@ QuarterTangent quarter_tangent(double a) {
   return {share, (0.125 * (1.0 + tangent * tangent) - share) / s};
 }
 
-class ExactBeamSpace final : public Element {
+/// How a beam is strained, and by what forces of its section the nodes are moved.
+class SpaceBeamElement : public Element {
  public:
-  ExactBeamSpace(std::string name, const SpaceNode& first, const SpaceNode& second, const double* q,
-                 const Matrix3& axes1, const Matrix3& axes2, const SpaceBeamSection& section)
-      : Element(std::move(name)), first_(first), second_(second), section_(section) {
+  SpaceBeamElement(std::string name, const SpaceNode& first, const SpaceNode& second, const double* q,
+                   const Matrix3& axes1, const Matrix3& axes2, const SpaceBeamSection& section)
+      : Element(std::move(name)), section_(section), first_(first), second_(second) {
     places_.assign(first.place.begin(), first.place.end());
     places_.insert(places_.end(), second.place.begin(), second.place.end());
     section1_ = first.rotation(q).conjugate() * Rotation(axes1);
@@ -46,38 +47,9 @@ class ExactBeamSpace final : public Element {
     strain0_ = now.strain;
     turn0_ = now.turn;
   }
-  std::unique_ptr<Element> clone() const override { return std::make_unique<ExactBeamSpace>(*this); }
-
-  void force(const Motion& motion, double* force) const override {
-    const State now = at(motion.q);
-    const Slopes slopes = slopes_at(now);
-    Eigen::Map<Local> sum_of_forces(force);
-    sum_of_forces = length_ * slopes.strain.transpose() * force_of(now) + slopes.turn.transpose() * moment_of(now);
-  }
-
-  void tangent(const Motion& motion, double stiffness, double damping, double* force, double* tangent) const override {
-    (void)damping;
-    const State now = at(motion.q);
-    const Slopes slopes = slopes_at(now);
-    const Vector3 n = force_of(now), m = moment_of(now);
-    Eigen::Map<Local> sum_of_forces(force);
-    sum_of_forces = length_ * slopes.strain.transpose() * n + slopes.turn.transpose() * m;
-    Eigen::Map<Tangent> sum(tangent);
-    sum = length_ * slopes.strain.transpose() * section_.force.asDiagonal() * slopes.strain +
-          slopes.turn.transpose() * (section_.moment / length_).asDiagonal() * slopes.turn;
-    add_geometric(now, slopes, n, m, sum);
-    sum *= stiffness;
-  }
   bool has_symmetric_tangent() const override { return false; }
 
-  double stored_energy(const Motion& motion) const override {
-    const State now = at(motion.q);
-    const Vector3 strain = now.strain - strain0_, curvature = (now.turn - turn0_) / length_;
-    return 0.5 * length_ *
-           (strain.dot(section_.force.cwiseProduct(strain)) + curvature.dot(section_.moment.cwiseProduct(curvature)));
-  }
-
- private:
+ protected:
   struct State {
     Vector3 turn;    // psi
     Matrix3 mean;    // R
@@ -86,6 +58,10 @@ class ExactBeamSpace final : public Element {
   /// Derivatives by the increments of both nodes.
   struct Slopes {
     Rows strain, turn, mean;  // of Gamma, of psi, and the increment of R in its own axes
+  };
+  /// Force n and moment m of the section, in its axes.
+  struct Stress {
+    Vector3 n, m;
   };
 
   State at(const double* q) const {
@@ -96,8 +72,6 @@ class ExactBeamSpace final : public Element {
     now.strain = now.mean.transpose() * (second_.position(q) - first_.position(q)) / length_;
     return now;
   }
-  Vector3 force_of(const State& now) const { return section_.force.cwiseProduct(now.strain - strain0_); }
-  Vector3 moment_of(const State& now) const { return section_.moment.cwiseProduct(now.turn - turn0_) / length_; }
 
   Slopes slopes_at(const State& now) const {
     const Matrix3 to1 = section1_.conjugate().toRotationMatrix(), to2 = section2_.conjugate().toRotationMatrix();
@@ -113,9 +87,17 @@ class ExactBeamSpace final : public Element {
     return slopes;
   }
 
+  Local forces(const Stress& stress, const Slopes& slopes) const {
+    return length_ * slopes.strain.transpose() * stress.n + slopes.turn.transpose() * stress.m;
+  }
+  Tangent material_tangent(const Rows& strain, const Rows& turn, const Slopes& slopes) const {
+    return length_ * slopes.strain.transpose() * section_.force.asDiagonal() * strain +
+           slopes.turn.transpose() * (section_.moment / length_).asDiagonal() * turn;
+  }
+
   /// What the forces n and m change by because their directions and levers do.
-  void add_geometric(const State& now, const Slopes& slopes, const Vector3& n, const Vector3& m,
-                     Eigen::Map<Tangent>& sum) const {
+  void add_geometric(const State& now, const Slopes& slopes, const Stress& stress, Tangent& sum) const {
+    const auto& [n, m] = stress;
     // Forces on positions: -+ R n.
     const Rows turned = -now.mean * skew(n) * slopes.mean;
     sum.middleRows<3>(x1) -= turned;
@@ -134,11 +116,100 @@ class ExactBeamSpace final : public Element {
     sum.middleRows<3>(r2) += section2_.toRotationMatrix() * (half - other + second);
   }
 
-  SpaceNode first_, second_;
   SpaceBeamSection section_;
   Rotation section1_, section2_;  // of the sections in the axes of their nodes
   double length_ = 0.0;
   Vector3 strain0_, turn0_;
+
+ private:
+  SpaceNode first_, second_;
+};
+
+class ExactBeamSpace final : public SpaceBeamElement {
+ public:
+  using SpaceBeamElement::SpaceBeamElement;
+  std::unique_ptr<Element> clone() const override { return std::make_unique<ExactBeamSpace>(*this); }
+
+  void force(const Motion& motion, double* force) const override {
+    const State now = at(motion.q);
+    Eigen::Map<Local>(force, k) = forces(stress(now), slopes_at(now));
+  }
+
+  void tangent(const Motion& motion, double stiffness, double, double* force, double* tangent) const override {
+    const State now = at(motion.q);
+    const Slopes slopes = slopes_at(now);
+    const Stress elastic = stress(now);
+    Eigen::Map<Local>(force, k) = forces(elastic, slopes);
+    Tangent sum = material_tangent(slopes.strain, slopes.turn, slopes);
+    add_geometric(now, slopes, elastic, sum);
+    Eigen::Map<Tangent>(tangent, k, k) = stiffness * sum;
+  }
+
+  double stored_energy(const Motion& motion) const override {
+    const State now = at(motion.q);
+    const Vector3 strain = now.strain - strain0_, curvature = (now.turn - turn0_) / length_;
+    return 0.5 * length_ *
+           (strain.dot(section_.force.cwiseProduct(strain)) + curvature.dot(section_.moment.cwiseProduct(curvature)));
+  }
+
+ private:
+  Stress stress(const State& now) const {
+    return {section_.force.cwiseProduct(now.strain - strain0_),
+            section_.moment.cwiseProduct(now.turn - turn0_) / length_};
+  }
+};
+
+/// The section holds its stiffnesses times the retardation time.
+class ViscousBeamSpace final : public SpaceBeamElement {
+ public:
+  using SpaceBeamElement::SpaceBeamElement;
+  std::unique_ptr<Element> clone() const override { return std::make_unique<ViscousBeamSpace>(*this); }
+  Role role() const override { return Role::damper; }
+
+  void force(const Motion& motion, double* force) const override {
+    const Slopes slopes = slopes_at(at(motion.q));
+    Eigen::Map<Local>(force, k) = forces(stress(slopes, velocities(motion)), slopes);
+  }
+
+  void tangent(const Motion& motion, double stiffness, double damping, double* force, double* tangent) const override {
+    const State now = at(motion.q);
+    const Slopes slopes = slopes_at(now);
+    const Local v = velocities(motion);
+    const Stress viscous = stress(slopes, v);
+    Eigen::Map<Local>(force, k) = forces(viscous, slopes);
+    Tangent geometric = material_tangent(strain_rate_slope(now, slopes, v), turn_rate_slope(now, slopes, v), slopes);
+    add_geometric(now, slopes, viscous, geometric);
+    Eigen::Map<Tangent>(tangent, k, k) =
+        stiffness * geometric + damping * material_tangent(slopes.strain, slopes.turn, slopes);
+  }
+
+ private:
+  Local velocities(const Motion& motion) const {
+    Local v;
+    for (std::size_t i = 0; i < k; ++i) v[static_cast<Index>(i)] = motion.v[places_[i]];
+    return v;
+  }
+  Stress stress(const Slopes& slopes, const Local& v) const {
+    return {section_.force.cwiseProduct(slopes.strain * v), section_.moment.cwiseProduct(slopes.turn * v) / length_};
+  }
+
+  /// d(Gamma')/dq with Gamma' = Gamma x w + R^T (x2' - x1')/L, where w = A1 w1 + A2 w2 is the rate of R in its own
+  /// axes.
+  Rows strain_rate_slope(const State& now, const Slopes& slopes, const Local& v) const {
+    const Vector3 difference = section2_.conjugate() * v.segment<3>(r2) - section1_.conjugate() * v.segment<3>(r1);
+    const auto [share, slope] = quarter_tangent(now.turn.norm());
+    const Rows rate_slope =
+        (slope * now.turn.cross(difference) * now.turn.transpose() - share * skew(difference)) * slopes.turn;
+    const Vector3 across = now.mean.transpose() * (v.segment<3>(x2) - v.segment<3>(x1)) / length_;
+    return -skew(slopes.mean * v) * slopes.strain + skew(now.strain) * rate_slope + skew(across) * slopes.mean;
+  }
+  /// d(psi')/dq with psi' = inverse w2 - inverse^T w1.
+  Rows turn_rate_slope(const State& now, const Slopes& slopes, const Local& v) const {
+    const Vector3 one = section1_.conjugate() * v.segment<3>(r1), two = section2_.conjugate() * v.segment<3>(r2);
+    return -(numerics::slope_of_transposed_inverse_tangent(now.turn, one) +
+             numerics::slope_of_transposed_inverse_tangent(-now.turn, two)) *
+           slopes.turn;
+  }
 };
 
 }  // namespace
@@ -147,6 +218,14 @@ std::unique_ptr<Element> make_exact_beam_space(std::string name, const SpaceNode
                                                const double* q, const Matrix3& axes1, const Matrix3& axes2,
                                                const SpaceBeamSection& section) {
   return std::make_unique<ExactBeamSpace>(std::move(name), first, second, q, axes1, axes2, section);
+}
+
+std::unique_ptr<Element> make_viscous_beam_space(std::string name, const SpaceNode& first, const SpaceNode& second,
+                                                 const double* q, const Matrix3& axes1, const Matrix3& axes2,
+                                                 const SpaceBeamSection& section, double retardation_time) {
+  return std::make_unique<ViscousBeamSpace>(
+      std::move(name), first, second, q, axes1, axes2,
+      SpaceBeamSection{section.force * retardation_time, section.moment * retardation_time});
 }
 
 }  // namespace rubato::model

@@ -31,4 +31,11 @@ std::unique_ptr<Element> make_exact_beam_space(std::string name, const SpaceNode
                                                const double* q, const numerics::Matrix3& axes1,
                                                const numerics::Matrix3& axes2, const SpaceBeamSection& section);
 
+/// The viscous part of such a beam of a Kelvin-Voigt material, added to the elastic one: Gamma and kappa resist with
+/// their stiffness times the retardation time [s] times their rates (Linn, Lang and Tuganov 2013).
+std::unique_ptr<Element> make_viscous_beam_space(std::string name, const SpaceNode& first, const SpaceNode& second,
+                                                 const double* q, const numerics::Matrix3& axes1,
+                                                 const numerics::Matrix3& axes2, const SpaceBeamSection& section,
+                                                 double retardation_time);
+
 }  // namespace rubato::model

@@ -30,4 +30,15 @@ std::unique_ptr<Element> make_plane_beam(std::string name, const PlaneNode& firs
                                          const std::array<double, 3>& position, const std::array<double, 3>& other,
                                          const PlaneSection& section);
 
+/// The viscous part of such a beam of a Kelvin-Voigt material: strains resist with their stiffness times the
+/// retardation time tau [s] times their rates, which a rigid motion does not have (Linn, Lang and Tuganov 2013):
+///
+///   power taken = tau L (E A stretch'^2 + k G A slide'^2 + E I bend'^2)
+///
+/// It stores nothing, and is added to the elastic one.
+std::unique_ptr<Element> make_viscous_plane_beam(std::string name, const PlaneNode& first, const PlaneNode& second,
+                                                 const std::array<double, 3>& position,
+                                                 const std::array<double, 3>& other, const PlaneSection& section,
+                                                 double retardation_time);
+
 }  // namespace rubato::model

@@ -19,6 +19,7 @@ struct LineProperties {
   double young = 0.0;                             ///< E [Pa]
   double shear_modulus = 0.0;                     ///< G [Pa]; 0 where nothing needs it
   double density = 0.0;                           ///< [kg/m3]
+  double retardation_time = 0.0;                  ///< of a Kelvin-Voigt material: damping = this times stiffness [s]
   double area = 0.0;                              ///< A [m2]
   double inertia_y = 0.0, inertia_z = 0.0;        ///< second moments about y and z [m4]; the plane has z only
   double torsion = 0.0;                           ///< torsion constant J [m4], space only

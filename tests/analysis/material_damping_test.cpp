@@ -1,0 +1,121 @@
+#include <rubato/core/error.hpp>
+
+#include <support/mechanism_study.hpp>
+#include <support/prepared_study.hpp>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+
+// Materials whose stress follows their strain rate too (Kelvin and Voigt), in structures and in mechanisms.
+namespace rubato {
+namespace {
+
+using testing::MechanismStudy;
+
+/// A clamped steel strip of 1 m, in the plane or in space, and its modes.
+std::string strip(const std::string& beam, const std::string& material, bool in_space = false) {
+  return fmt::format(R"(
+[[node]]
+name = "a"
+position = [0.0, 0.0{0}]
+[[node]]
+name = "b"
+position = [1.0, 0.0{0}]
+[[support]]
+node = "a"
+fix = [{1}]
+[[material]]
+name = "steel"
+young = 2.1e11
+poisson = 0.3
+density = 7800.0
+{2}
+[[section]]
+name = "strip"
+area = 1e-4
+inertia = {3}
+shear_factor = 0.83
+[[beam]]
+name = "arm"
+nodes = ["a", "b"]
+section = "strip"
+material = "steel"
+{4}
+)",
+                     in_space ? ", 0.0" : "", in_space ? R"("x", "y", "z", "rx", "ry", "rz")" : R"("x", "y", "rz")",
+                     material, in_space ? "[8e-10, 9e-10]\ntorsion = 1.4e-9" : "8e-10", beam);
+}
+const std::string modes = R"(
+[[analysis]]
+name = "modes"
+type = "modes"
+)";
+
+void expect_ratios_of_retardation(const testing::MemorySink::Table& table, double time) {
+  ASSERT_GE(table.rows.size(), 6u);
+  for (const auto& row : table.rows) {
+    const double expected = 0.5 * time * row[table.column("angular_frequency")];
+    EXPECT_NEAR(row[table.column("damping_ratio")], expected, 1e-6 * expected);
+  }
+}
+
+testing::MemorySink run_structure(const std::string& text) {
+  const testing::PreparedStudy prepared(text);
+  testing::MemorySink sink;
+  testing::QuietProgress progress;
+  const std::atomic<bool> stop{false};
+  analysis::RunContext context{sink, progress, stop};
+  const auto report = analysis::run_analysis(prepared.study.analyses.front(), prepared.input(), context);
+  EXPECT_EQ(report.status, analysis::RunStatus::done) << report.message;
+  return sink;
+}
+
+TEST(MaterialDamping, GivesModesTheRatioOfHalfTheirFrequency) {
+  const std::string material = "retardation_time = 1e-6";
+  for (const bool in_space : {false, true}) {
+    const auto structure = run_structure(strip("elements = 4", material, in_space) + modes);
+    expect_ratios_of_retardation(structure.tables.at("modes"), 1e-6);
+    const MechanismStudy mechanism(strip("formulation = \"geometrically_exact\"", material, in_space) + modes);
+    ASSERT_EQ(mechanism.report.status, analysis::RunStatus::done) << mechanism.report.message;
+    expect_ratios_of_retardation(mechanism.table("modes"), 1e-6);
+  }
+}
+
+// tau = 0.02 s takes 0.53 of the first bending mode, 8.3 Hz, to which all others die at once.
+TEST(MaterialDamping, TakesTheEnergyOfABeamLetGo) {
+  for (const bool in_space : {false, true}) {
+    const MechanismStudy ran(
+        strip("formulation = \"geometrically_exact\"\nelements = 3", "retardation_time = 0.02", in_space) +
+        R"(
+[[force]]
+on = "b.y"
+expression = "t < 0.2 ? 100 : 0"
+[[analysis]]
+name = "run"
+type = "transient"
+duration = 0.6
+step = { tolerance = 1e-5 }
+)");
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    const double work = ran.last("run.energy", "load_work"), taken = ran.last("run.energy", "damper_dissipated");
+    EXPECT_GT(work, 1.0);
+    EXPECT_NEAR(taken, work, 1e-3 * work);
+    EXPECT_NEAR(ran.last("run.energy", "residue"), 0.0, 1e-3 * work);
+  }
+}
+
+TEST(MaterialDamping, IsRefusedWhereItWouldMakeEnergy) {
+  try {
+    (void)testing::PreparedStudy(strip("elements = 4", "retardation_time = -1e-6") + modes);
+    ADD_FAILURE() << "not refused";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("material \"steel\": retardation_time"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace rubato
