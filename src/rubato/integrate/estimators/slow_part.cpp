@@ -1,5 +1,7 @@
 #include <rubato/integrate/estimators/slow_part.hpp>
 
+#include <cmath>
+
 namespace rubato::integrate {
 
 SlowPart::SlowPart(Index n)
@@ -7,12 +9,13 @@ SlowPart::SlowPart(Index n)
 
 void SlowPart::look(const Vector& change, double h, double cut) {
   x_ = change / h;
+  h_ = h;
   if (is_new_) {
     value_ = x_;
     rate_.setZero();
     return;
   }
-  const double share = share_ = cut * h / (1.0 + cut * h);
+  const double share = share_ = std::fmax(cut * h / (1.0 + cut * h), h / (elapsed_ + h));
   for (Index i = 0; i < x_.size(); ++i) {
     const double first = first_[i] + share * (x_[i] - first_[i]);
     const double second = second_[i] + share * (first - second_[i]);
@@ -26,6 +29,7 @@ void SlowPart::accept() {
   if (is_new_) {
     first_ = second_ = third_ = x_;
     is_new_ = false;
+    elapsed_ = h_;
     return;
   }
   for (Index i = 0; i < x_.size(); ++i) {
@@ -33,6 +37,7 @@ void SlowPart::accept() {
     second_[i] += share_ * (first_[i] - second_[i]);
     third_[i] = value_[i];
   }
+  elapsed_ += h_;
 }
 
 }  // namespace rubato::integrate

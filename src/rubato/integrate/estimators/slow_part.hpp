@@ -8,7 +8,9 @@ namespace rubato::integrate {
 ///
 ///   y1' = cut (x - y1),   y2' = cut (y1 - y2),   y3' = cut (y2 - y3),   |y3/x| = (1 + (omega/cut)^2)^(-3/2)
 ///
-/// with backward Euler over steps of any length: without memory where cut h is large.
+/// with backward Euler over steps of any length: without memory where cut h is large. Until they remember enough the
+/// poles are means over what there has been since the start, so that a pulse there is forgotten as it is spread over
+/// more time: that after an impact on what is damped is gone in nanoseconds, and would have been held at its peak.
 class SlowPart {
  public:
   explicit SlowPart(Index n);
@@ -29,7 +31,8 @@ class SlowPart {
   Vector first_, second_, third_;  // y1, y2, y3
   Vector value_, rate_;
   Vector x_;
-  double share_ = 0.0;  // of the last look
+  double share_ = 0.0, h_ = 0.0;  // of the last look
+  double elapsed_ = 0.0;          // since the first
   bool is_new_ = true;
 };
 
