@@ -46,7 +46,7 @@ void MechanismTimeline::interpolate(const system::State& from, const system::Sta
   out.t = from.t + share * h;
   mechanism_.difference(from.q, to.q, out.v);
   mechanism_.retract(from.q, passed * out.v + first * from.v + last * to.v, out.q);
-  out.v = (1.0 - passed) * from.v + passed * to.v + first * from.acceleration + last * to.acceleration;
+  out.v = rest * from.v + share * to.v;
 }
 
 double MechanismTimeline::first_passage(std::size_t i, const system::State& from, const system::State& to,

@@ -85,7 +85,8 @@ class MechanismTimeline final : public Timeline {
   void note_friction(const std::vector<int>& old, const system::State& state);
   /// The guard of a lock in a state.
   GuardValue guard_at(std::size_t lock, const system::State& state, const Vector& floors);
-  /// The state at a share of a step, by the cubics of its positions and velocities.
+  /// The state at a share of a step, by the cubic of its positions and the chord of its velocities: slopes of
+  /// velocities are those of vibrations too, and what is stiffly damped would turn their errors into forces.
   void interpolate(const system::State& from, const system::State& to, double share, system::State& out) const;
   /// Where a guard without a rate first passes zero, as a share of the step; 2: nowhere. Its values at both ends and in
   /// the middle give a parabola; where that turns round close to zero the guard is looked at.
