@@ -155,7 +155,7 @@ TEST(AnalysisError, RefusesAKeyThatItDoesNotKnow) {
   EXPECT_EQ(verdict_adding("start = \"static\"\n"),
             "study.toml:42:1: error: analysis \"response\" has no key \"start\"; known: name, type, method, step, "
             "duration, "
-            "output, observe, energy, ...");
+            "output, observe, energy, allow_unstable, project_velocities, initial, displacements");
 }
 
 }  // namespace

@@ -174,6 +174,30 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
             "study.toml:43:8: error: a [[coordinate]] does not go with a ");
 }
 
+TEST(ReadMechanism, PointsToWhatTakesASecondLockOrALoadThatIsGiven) {
+  const std::string lock = "lock = { at = \"pi/2\", kind = \"latch\" }";
+  EXPECT_EQ(
+      verdict_with(lock, "lock = [{ at = 1.5, kind = \"stop\" }, { at = -1.5, kind = \"stop\" }]"),
+      "study.toml:21:8: error: joint \"A\": lock must be one table { ... }: a joint has one lock; give another to "
+      "a [[joint]] of type = \"strut\" between points of the same parts");
+  EXPECT_EQ(verdict_with(lock, "friction = [{ coefficient = 0.1, preload = 1.0, radius = 0.1 }]"),
+            "study.toml:21:12: error: joint \"A\": friction must be one table { ... }, got a list of 1");
+  for (const std::string load : {"10", "\"10\"", "\"N0\""})
+    EXPECT_EQ(
+        verdict_with(lock, "friction = { coefficient = 0.1, radius = 0.1, normal_load = " + load + " }"),
+        "study.toml:21:61: error: joint \"A\": friction: normal_load is \"reaction\", the joint's own; a load that "
+        "is given [N] is \"preload\"");
+}
+
+TEST(ReadMechanism, NamesEveryKeyAndTheTableThatTakesAType) {
+  EXPECT_EQ(verdict_with("[[joint]]", "[[strutt]]"),
+            "study.toml:14:3: error: the study has no key \"strutt\"; write [[joint]] with type = \"strut\"");
+  EXPECT_EQ(verdict_with("[[joint]]", "[[hinge]]"),
+            "study.toml:14:3: error: the study has no key \"hinge\"; write [[joint]] with type = \"revolute\"");
+  EXPECT_NE(verdict_with("[[joint]]", "[[linkage]]").find("gravity, body, joint, analysis"), std::string::npos);
+  EXPECT_NE(verdict_with("type = \"prismatic\"", "type = \"slot\"").find("planar, screw, strut"), std::string::npos);
+}
+
 TEST(ReadMechanism, WantsPlacesForJointsThatHaveNone) {
   EXPECT_EQ(verdict_with("at = [1.0, 0.0]\n", ""),
             "study.toml:24:8: error: joint \"B\" needs \"at\", its place in the configuration given [m]");

@@ -109,9 +109,12 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
       verdict_with("mass = 10.0", "mass = 10.0\npositon = 1.0"),
       "study.toml:9:1: error: coordinate \"disk\" has no key \"positon\"; did you mean \"position\"? (known: name, "
       "mass, position, velocity)");
-  EXPECT_EQ(verdict_with("title", "titel"),
-            "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: title, parameters, "
-            "coordinate, matrices, spring, damper, damping, slider, ...)");
+  EXPECT_EQ(
+      verdict_with("title", "titel"),
+      "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
+      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, force, distributed_force, "
+      "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
+      "joint, analysis)");
 }
 
 TEST(KeyError, PointsAtTheMisspellingOfARequiredKey) {
@@ -129,8 +132,10 @@ TEST(KeyError, PointsAtTheMisspellingOfARequiredKey) {
 TEST(KeyError, NamesAnUnknownTable) {
   EXPECT_EQ(
       verdict_with("[[spring]]", "[[sprig]]"),
-      "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: title, parameters, "
-      "coordinate, matrices, spring, damper, damping, slider, ...)");
+      "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
+      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, force, distributed_force, "
+      "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
+      "joint, analysis)");
 }
 
 TEST(KeyError, NamesAMissingKeyAtItsTable) {

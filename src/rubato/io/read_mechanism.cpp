@@ -134,6 +134,11 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
   friction.where = reader.where();
   friction.coefficient = reader.quantity("coefficient");
   friction.preload = reader.optional_quantity("preload");
+  if (const toml::node* load = reader.node("normal_load"); load && load->value_or<std::string>("") != "reaction")
+    throw InvalidInput(reader.where("normal_load"),
+                       fmt::format("{}: normal_load is \"reaction\", the joint's own; a load that is given [N] is "
+                                   "\"preload\"",
+                                   reader.what()));
   const auto load = reader.optional_word("normal_load", {"reaction"});
   if (friction.preload.has_value() == load.has_value())
     throw InvalidInput(reader.where(),
@@ -270,6 +275,11 @@ JointDescription read_joint(TomlReader& reader, std::size_t number, const std::f
     throw InvalidInput(joint.rest->where, fmt::format("{}: rest goes with a stiffness", reader.what()));
   if (auto friction = reader.optional_table("friction", fmt::format("{}: friction", reader.what())))
     joint.friction = read_friction(*friction, joint.type);
+  if (const toml::node* lock = reader.node("lock"); lock && lock->is_array())
+    throw InvalidInput(reader.where("lock"),
+                       fmt::format("{}: lock must be one table {{ ... }}: a joint has one lock; give another to a "
+                                   "[[joint]] of type = \"strut\" between points of the same parts",
+                                   reader.what()));
   if (auto lock = reader.optional_table("lock", fmt::format("{}: lock", reader.what()))) joint.lock = read_lock(*lock);
   reader.finish();
   return joint;
@@ -278,6 +288,9 @@ JointDescription read_joint(TomlReader& reader, std::size_t number, const std::f
 }  // namespace
 
 void read_mechanism(TomlReader& root, const std::filesystem::path& folder, ModelDescription& model) {
+  for (const std::string& type : joint_types)
+    root.note_elsewhere(type, fmt::format("write [[joint]] with type = \"{}\"", type));
+  root.note_elsewhere("hinge", "write [[joint]] with type = \"revolute\"");
   for (TomlReader& reader : root.tables("body")) model.bodies.push_back(read_body(reader));
   for (TomlReader& reader : root.tables("joint"))
     model.joints.push_back(read_joint(reader, model.joints.size() + 1, folder));

@@ -1,6 +1,7 @@
 #include <rubato/io/toml_reader.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -16,6 +17,13 @@ std::string value_found(const toml::node& node) {
     return list->empty() ? "an empty list" : fmt::format("a list of {}", list->size());
   if (node.is_table()) return "a table";
   return "a date";
+}
+
+/// As suggestion(), with every name: which keys and words there are cannot be guessed.
+std::string whole_suggestion(const std::string& name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  if (nearest.empty()) return fmt::format("; known: {}", fmt::join(known, ", "));
+  return fmt::format("; did you mean \"{}\"? (known: {})", nearest, fmt::join(known, ", "));
 }
 
 }  // namespace
@@ -88,7 +96,7 @@ std::optional<std::string> TomlReader::optional_word(const std::string& key, con
   auto word = optional_text(key);
   if (word && std::find(words.begin(), words.end(), *word) == words.end())
     throw InvalidInput(where(key),
-                       fmt::format("{}: {} cannot be \"{}\"{}", what_, key, *word, suggestion(*word, words)));
+                       fmt::format("{}: {} cannot be \"{}\"{}", what_, key, *word, whole_suggestion(*word, words)));
   return word;
 }
 
@@ -196,7 +204,10 @@ std::optional<TomlReader> TomlReader::optional_table(const std::string& key, con
   if (!found) return std::nullopt;
   const auto* table = found->as_table();
   if (!table && found->is_array_of_tables())
-    throw InvalidInput(location(*found), fmt::format("\"{0}\" must be written as [{0}], once", key));
+    throw InvalidInput(location(*found), what == "[" + key + "]"
+                                             ? fmt::format("\"{0}\" must be written as [{0}], once", key)
+                                             : fmt::format("{}: {} must be one table {{ ... }}, got a list of {}",
+                                                           what_, key, found->as_array()->size()));
   if (!table) refuse_type(*found, key, "a table");
   return TomlReader(*table, what, file_);
 }
@@ -216,7 +227,12 @@ void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    throw InvalidInput(location(key), fmt::format("{} has no key \"{}\"{}", what_, name, suggestion(name, known_)));
+    std::vector<std::string> all = known_;
+    for (const auto& [other, what] : elsewhere_) all.push_back(other);
+    const auto found = elsewhere_.find(nearest_name(name, all));
+    throw InvalidInput(location(key),
+                       fmt::format("{} has no key \"{}\"{}", what_, name,
+                                   found != elsewhere_.end() ? "; " + found->second : whole_suggestion(name, known_)));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <toml++/toml.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,8 @@ class TomlReader {
   void refuse_beside(const std::string& chosen, const std::vector<std::string>& keys);
   /// A missing key is more often misspelled than forgotten: points at the misspelling.
   void refuse_misspelling_of(const std::string& key) const;
+  /// What to write in place of a key that users look for here: "a strut is a [[joint]] of type = "strut"".
+  void note_elsewhere(const std::string& key, std::string what) { elsewhere_[key] = std::move(what); }
   /// Throws for a key that nothing asked for.
   void finish() const;
 
@@ -68,6 +71,7 @@ class TomlReader {
   const toml::table& table_;
   std::string what_, file_;
   std::vector<std::string> known_;
+  std::map<std::string, std::string> elsewhere_;
 };
 
 }  // namespace rubato::io
