@@ -198,6 +198,26 @@ TEST(ReadMechanism, NamesEveryKeyAndTheTableThatTakesAType) {
   EXPECT_NE(verdict_with("type = \"prismatic\"", "type = \"slot\"").find("planar, screw, strut"), std::string::npos);
 }
 
+// A strut without a law would leave the motion as it is.
+TEST(ReadMechanism, RefusesAStrutOnWhichNothingActs) {
+  const auto with_strut = [](const std::string& keys) {
+    return verdict(crank +
+                   "[[joint]]\nname = \"S\"\ntype = \"strut\"\nbetween = [\"ground\", \"rod\"]\nat = [0.0, "
+                   "1.0]\nto = [2.0, 0.0]\n" +
+                   keys);
+  };
+  EXPECT_EQ(with_strut(""),
+            "study.toml:42:8: error: joint \"S\" is a strut that does nothing; give it \"force\", \"stiffness\", "
+            "\"damping\", \"drive\", \"lock\" or \"friction\"; force = 0 only measures its length");
+  for (const std::string keys : {"force = 0", "stiffness = 1", "damping = 1", "drive = \"2.3 + 0.1*t\"",
+                                 "lock = { at = 3, kind = \"stop\" }", "friction = { coefficient = 1, preload = 1 }"})
+    EXPECT_EQ(with_strut(keys), "no complaint") << keys;
+  EXPECT_EQ(
+      with_strut("drive = \"-1 - t\""),
+      "study.toml:47:9: error: joint \"S\": the drive of a strut is its length and must be positive, got -1 at the "
+      "start");
+}
+
 TEST(ReadMechanism, WantsPlacesForJointsThatHaveNone) {
   EXPECT_EQ(verdict_with("at = [1.0, 0.0]\n", ""),
             "study.toml:24:8: error: joint \"B\" needs \"at\", its place in the configuration given [m]");

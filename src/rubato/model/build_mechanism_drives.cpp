@@ -74,6 +74,10 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
           ? MotionLaw(build_motion(*formula, assembly.parameters, its_drive))
           : MotionLaw(build_motion(std::get<TableDescription>(drive.law), assembly.parameters, its_drive, drive.where));
   const double start = derivatives(law, 0.0, Side::right).value;
+  if (joint.type == JointDescription::Type::strut && !(start > 0.0))
+    throw InvalidInput(drive.where, fmt::format("{}: the drive of a strut is its length and must be positive, got {} "
+                                                "at the start",
+                                                part, start));
   if (is_angle && !(std::abs(start - value) <= 2.0 * std::numbers::pi))
     throw InvalidInput(drive.where,
                        fmt::format("{}: the drive starts at {} rad, more than a turn away from the angle {} of the "

@@ -204,6 +204,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   Mechanism& mechanism = assembly.mechanism;
   const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
   if (joint.type == Type::strut) {
+    require_law(joint, part);
     (void)length_of(assembly, joint, part, places);
     mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
     ++assembly.elements;

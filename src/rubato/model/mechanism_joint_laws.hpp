@@ -20,6 +20,21 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
   if (joint.axis.empty()) throw InvalidInput(joint.where, fmt::format("{} lacks the key \"axis\"", part));
 }
 
+/// Whether anything acts on the coordinate that a joint leaves free.
+inline bool has_law(const JointDescription& joint) {
+  return joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping || joint.lock ||
+         joint.friction;
+}
+
+/// Throws InvalidInput for a strut on which nothing acts: its length alone changes no motion.
+inline void require_law(const JointDescription& joint, const std::string& part) {
+  if (has_law(joint)) return;
+  throw InvalidInput(joint.where,
+                     fmt::format("{} is a strut that does nothing; give it \"force\", \"stiffness\", \"damping\", "
+                                 "\"drive\", \"lock\" or \"friction\"; force = 0 only measures its length",
+                                 part));
+}
+
 /// The law of a drive, checked.
 /// @param value  of the coordinate in the configuration given
 MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
