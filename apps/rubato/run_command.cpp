@@ -174,16 +174,26 @@ std::vector<std::string> tables_in(const std::filesystem::path& folder) {
   return files;
 }
 
-/// Tells which tables of a former run stand beside the results as if they were theirs.
-void tell_of_former(const std::vector<std::string>& former, const std::filesystem::path& folder) {
+/// Tables of a former run that these results do not have go to a folder of their own, so that the tables, results.nc
+/// and the report are of one run. What Rubato did not write stays where it is.
+void set_former_aside(const std::vector<std::string>& former, const std::filesystem::path& folder, bool quiet) {
   const std::vector<std::string> written = tables_in(folder);
-  std::vector<std::string> left;
-  for (const std::string& file : former)
-    if (std::find(written.begin(), written.end(), file) == written.end() && std::filesystem::exists(folder / file))
-      left.push_back(file);
-  if (left.empty()) return;
-  tell(fmt::format("warning: {} still holds {} of a former run, which these results do not have: {}", folder.string(),
-                   left.size() == 1 ? "a table" : "tables", fmt::join(left, ", ")));
+  const std::filesystem::path aside = folder / "former";
+  std::vector<std::string> moved, left;
+  for (const std::string& file : former) {
+    std::error_code fault;
+    if (std::find(written.begin(), written.end(), file) != written.end()) continue;
+    if (!std::filesystem::exists(folder / file, fault)) continue;
+    std::filesystem::create_directory(aside, fault);
+    if (!fault) std::filesystem::rename(folder / file, aside / file, fault);
+    (fault ? left : moved).push_back(file);
+  }
+  if (!moved.empty() && !quiet)
+    tell(fmt::format("tables of a former run, which these results do not have, were moved to {}: {}", aside.string(),
+                     fmt::join(moved, ", ")));
+  if (!left.empty())
+    tell(fmt::format("warning: {} still holds tables of a former run, which these results do not have: {}",
+                     folder.string(), fmt::join(left, ", ")));
 }
 
 /// For ParaView. Returns false, and says why, where it was not written; the results are safe.
@@ -226,7 +236,7 @@ int run(const RunOptions& options) {
     std::fflush(nullptr);
     std::_Exit(exit_failed);
   }
-  if (!options.quiet) tell_of_former(former, folder);
+  set_former_aside(former, folder, options.quiet);
   if (options.vtk && !write_motion(folder) && status == exit_done) status = exit_failed;
   try {
     report::write_report(folder / "results.nc", folder / "report.html");

@@ -158,13 +158,18 @@ class Command(unittest.TestCase):
             differing = [line for line, other in zip(one, two, strict=True) if line != other]
             self.assertTrue(all(":history" in line for line in differing), differing)
 
-    def test_tables_of_a_former_run_are_told(self):
+    def test_tables_of_a_former_run_are_set_aside(self):
         study = EXAMPLES / "single-mass-slider" / "study.toml"
         self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "response", "exact").stderr)
+        (self.folder / "twice/notes.csv").write_text("of the user")
+        response = (self.folder / "twice/response.csv").read_bytes()
         again = self.run_command("run", "-o", "twice", study, "--only", "exact")
         self.assertEqual(again.returncode, 0)
-        self.assertIn("warning: twice still holds tables of a former run, which these results do not have: response.csv, "
+        self.assertIn("tables of a former run, which these results do not have, were moved to twice/former: response.csv, "
                       "response.energy.csv\n", again.stderr)
+        self.assertEqual({entry.name for entry in (self.folder / "twice").iterdir()},
+                         {"former", "notes.csv", "results.nc", "report.html", "exact.csv", "exact.energy.csv"})
+        self.assertEqual((self.folder / "twice/former/response.csv").read_bytes(), response)
         self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "exact").stderr)
 
     def test_an_analysis_without_a_static_start_leaves_the_others_alone(self):
