@@ -336,11 +336,12 @@ duration = 0.1
         self.assertEqual(len(self.rows("out/long.csv")), 201)
         self.assertTrue((self.folder / "out/report.html").exists())
 
-    def test_a_file_in_the_place_of_the_folder_is_found_out_at_once(self):
+    def test_a_folder_that_cannot_be_made_is_a_wrong_option(self):
         (self.folder / "out").write_text("a file")
-        result = self.run_command("run", EXAMPLES / "single-mass" / "study.toml", "-o", "out")
-        self.assertEqual(result.returncode, 3)
-        self.assertEqual(result.stderr, "error: out: exists and is no folder; choose another (-o DIR)\n")
+        for folder, reason in (("out", "exists and is no folder"), ("/proc/nope", r"the folder cannot be made: .+")):
+            result = self.run_command("run", EXAMPLES / "single-mass" / "study.toml", "-o", folder)
+            self.assertEqual(result.returncode, 2)
+            self.assertRegex(result.stderr, rf"^error: {folder}: {reason}; choose another \(-o DIR\)\n$")
         self.assertEqual((self.folder / "out").read_text(), "a file")
 
     def test_output_that_cannot_grow_is_reported_plainly(self):

@@ -38,16 +38,20 @@ void prepare_output_folder(const std::filesystem::path& folder, double expected_
   namespace fs = std::filesystem;
   std::error_code fault;
   if (fs::exists(folder, fault) && !fs::is_directory(folder, fault))
-    throw OutputError(fmt::format("{}: exists and is no folder; choose another (-o DIR)", folder.string()));
+    throw InvalidInput(fmt::format("{}: exists and is no folder; choose another (-o DIR)", folder.string()));
   fs::create_directories(folder, fault);
+  if (fault.value() == ENOSPC) throw OutputError(write_failure(folder, ENOSPC));
   if (fault)
-    throw OutputError(
+    throw InvalidInput(
         fmt::format("{}: the folder cannot be made: {}; choose another (-o DIR)", folder.string(), fault.message()));
   const fs::path probe = folder / ".rubato-probe";
   {
     errno = 0;
     std::ofstream stream(probe);
     stream << "probe" << std::flush;
+    if (!stream.is_open())
+      throw InvalidInput(fmt::format("{}: nothing can be written there: {}; choose another (-o DIR)", folder.string(),
+                                     std::strerror(errno)));
     if (!stream) throw OutputError(write_failure(probe, errno));
   }
   fs::remove(probe, fault);

@@ -10,7 +10,8 @@ namespace rubato::io {
 inline constexpr double disk_reserve = 8.0 * 1024 * 1024;
 
 /// Makes the folder for results ready: creates it, writes and removes a probe, and compares the free space with what is
-/// expected and the reserve. Throws OutputError, naming the folder and the remedy, before anything is computed.
+/// expected and the reserve. Throws, before anything is computed, InvalidInput for a folder that cannot be made or
+/// written into, and OutputError where the disk has no room, naming the folder and the remedy.
 void prepare_output_folder(const std::filesystem::path& folder, double expected_bytes);
 
 /// `FILE: REASON; REMEDY` for a failed write, with the reason of the operating system, and the free space where it has
