@@ -72,6 +72,21 @@ Journals open_journals(const PreparedStudy& study, const RunOptions& options, co
   return journals;
 }
 
+/// Tells which analyses begin anew, which --resume does not say: only sweeps go on where they stopped.
+void tell_what_begins_anew(const PreparedStudy& study, const Journals& journals) {
+  std::vector<std::string> others, sweeps;
+  for (std::size_t i = 0; i < journals.size(); ++i) {
+    if (journals[i] && journals[i]->finished() > 0) continue;
+    (journals[i] ? sweeps : others).push_back("\"" + study.analyses[i].name + "\"");
+  }
+  const auto tell_of = [](const std::vector<std::string>& names, const char* why) {
+    if (!names.empty())
+      tell(fmt::format("--resume: {} begin{} anew: {}", fmt::join(names, ", "), names.size() == 1 ? "s" : "", why));
+  };
+  tell_of(others, "only frequency responses and damper curves go on where they stopped");
+  tell_of(sweeps, "no interrupted run left points of it");
+}
+
 /// Runs the analyses of a study, several at a time; each writes tables of its own, so that the results do not depend on
 /// how many. What goes wrong with one is in its report, and those that have not begun are left.
 class Runner {
@@ -221,6 +236,7 @@ int run(const RunOptions& options) {
   try {
     io::prepare_output_folder(folder, study.expected_bytes());
     const Journals journals = open_journals(study, options, folder);
+    if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
                                                   study.description.text, options.command, io::utc_now()});
     for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);

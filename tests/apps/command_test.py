@@ -172,6 +172,13 @@ class Command(unittest.TestCase):
         self.assertEqual((self.folder / "twice/former/response.csv").read_bytes(), response)
         self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "exact").stderr)
 
+    def test_resume_tells_what_begins_anew(self):
+        study = self.write(LONG.replace("DURATION", "1.0"))
+        result = self.run_command("run", study, "--resume")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn('--resume: "long" begins anew: only frequency responses and damper curves go on where they stopped\n',
+                      result.stderr)
+
     def test_an_analysis_without_a_static_start_leaves_the_others_alone(self):
         (self.folder / "falls.toml").write_text("""
 [[body]]
