@@ -3,6 +3,7 @@
 #include "prepared_study.hpp"
 #include "progress_bar.hpp"
 
+#include <rubato/analysis/mechanism_size.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/io/journal_file.hpp>
 #include <rubato/io/output_folder.hpp>
@@ -269,11 +270,14 @@ int check(const StudyOptions& options) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   const PreparedStudy study = prepare(options);
-  if (study.mechanism)
-    fmt::print("{}\n  {}, {}, {}\n", study.description.title, counted(study.mechanism->size(), "coordinate"),
-               counted(study.mechanism->constraint_count(), "constraint"),
+  if (study.mechanism) {
+    const analysis::MechanismSize size = analysis::size_of(*study.mechanism);
+    fmt::print("{}\n  {}, {} ({} of drives, {} redundant), {} left, {}\n", study.description.title,
+               counted(size.coordinates, "coordinate"), counted(size.constraints, "constraint"), size.drives,
+               size.redundant,
+               size.freedoms() == 1 ? "1 degree of freedom" : fmt::format("{} degrees of freedom", size.freedoms()),
                counted(static_cast<Index>(study.mechanism->model().locks.size()), "lock"));
-  else
+  } else
     fmt::print("{}\n  {}, {}{}\n", study.description.title, counted(study.system.size(), "coordinate"),
                counted(study.system.slider_count(), "slider"),
                study.system.stop_count() > 0 ? ", " + counted(study.system.stop_count(), "stop") : "");

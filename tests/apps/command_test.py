@@ -244,6 +244,47 @@ duration = 0.1
         self.assertIn("5 coordinates, 2 sliders", result.stdout)
         self.assertIn("transient, generalized_alpha, 12000 steps of 0.005 s to t = 60 s", result.stdout)
 
+    def test_check_tells_the_freedoms_that_joints_and_drives_leave(self):
+        # A slider-crank of three bodies has nine coordinates and eight rows; a second guide repeats two of them.
+        text = "".join(f"""
+[[body]]
+name = "{name}"
+mass = 1.0
+inertia = 0.1
+position = [{x}, 0.5]
+""" for name, x in (("crank", 0.0), ("rod", 0.5), ("slider", 1.0)))
+        joints = (("A", "revolute", "ground", "crank", 0.0, 0.0), ("B", "revolute", "crank", "rod", 0.0, 1.0),
+                  ("C", "revolute", "rod", "slider", 1.0, 0.0), ("D", "prismatic", "ground", "slider", 1.0, 0.0),
+                  ("E", "prismatic", "ground", "slider", 1.5, 0.0))
+
+        def size_with(count, keys=""):
+            parts = [f"""
+[[joint]]
+name = "{name}"
+type = "{kind}"
+between = ["{first}", "{second}"]
+at = [{x}, {y}]
+{"axis = [1.0, 0.0]" if kind == "prismatic" else ""}
+{keys if name == "A" else ""}
+""" for name, kind, first, second, x, y in joints[:count]]
+            self.write(text + "".join(parts) + """
+[[analysis]]
+name = "run"
+type = "transient"
+step = 0.01
+duration = 1.0
+""")
+            return self.run_command("check", "study.toml").stdout.splitlines()[1].strip()
+
+        self.assertEqual(size_with(4), "9 coordinates, 8 constraints (0 of drives, 0 redundant), 1 degree of freedom left, "
+                                       "0 locks")
+        self.assertEqual(size_with(5), "9 coordinates, 10 constraints (0 of drives, 2 redundant), 1 degree of freedom left, "
+                                       "0 locks")
+        self.assertEqual(size_with(4, 'drive = "0.1*t"'), "9 coordinates, 9 constraints (1 of drives, 0 redundant), "
+                                                          "0 degrees of freedom left, 0 locks")
+        self.assertEqual(size_with(4, 'lock = { at = 1.0, kind = "latch" }'),
+                         "9 coordinates, 8 constraints (0 of drives, 0 redundant), 1 degree of freedom left, 1 lock")
+
     def test_methods_and_schema_and_examples_answer_on_stdout(self):
         self.assertIn("generalized_alpha", self.run_command("methods").stdout)
         curves = self.run_command("methods", "average_acceleration", "--csv").stdout.splitlines()
