@@ -261,6 +261,16 @@ TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
   EXPECT_THAT(analysis::failure_of(report, mechanism, mechanism.start(), {}, ""), Not(HasSubstr("change")));
 }
 
+// Numbers whose squares no double holds: an inertia in the unit of another planet.
+TEST(MechanismMessages, NameMassesAndPlacesThatCannotBeComputedWith) {
+  EXPECT_THAT(
+      refusal(replaced(cart, "inertia = 1.0", "inertia = 1e300")),
+      HasSubstr("the numbers of the model are too large or too small to compute with: masses and inertias reach "
+                "from 1 kg at \"cart.x\" to 1e+300 kg m2 at \"cart.rz\", places to 0 m; look at their units"));
+  EXPECT_THAT(refusal(replaced(cart, "mass = 1.0", "mass = 1e-300")), HasSubstr("from 1e-300 kg at \"cart.x\""));
+  EXPECT_THAT(refusal(replaced(cart, "at = [0.0, 0.0]", "at = [1e300, 0.0]")), Not(HasSubstr("\"\"")));
+}
+
 // Parts of structures that a mechanism would pass over.
 TEST(MechanismMessages, RefuseWhatMechanismsHaveNot) {
   const std::string block = testing::block_in_guide(testing::in_plane, 0.0, "") + testing::transient("0.01", 0.1);

@@ -250,6 +250,22 @@ void warn_of_locks_behind(const system::Mechanism& mechanism, const system::Stat
   }
 }
 
+/// Of masses and places that double precision cannot hold beside each other.
+std::string immense_numbers(const system::Mechanism& mechanism) {
+  const Vector inertia = mechanism.mass().diagonal(), place = mechanism.start().q.cwiseAbs();
+  Index least = 0, most = 0;
+  const double low = inertia.minCoeff(&least), high = inertia.maxCoeff(&most);
+  const auto told = [&](double value, Index at) {
+    return fmt::format("{:.4g} {} at \"{}\"", value,
+                       mechanism.model().is_rotation[static_cast<std::size_t>(at)] != 0 ? "kg m2" : "kg",
+                       mechanism.coordinates()[static_cast<std::size_t>(at)]);
+  };
+  return fmt::format(
+      "the numbers of the model are too large or too small to compute with: masses and inertias reach "
+      "from {} to {}, places to {:.4g} m; look at their units",
+      told(low, least), told(high, most), place.maxCoeff());
+}
+
 }  // namespace
 
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
@@ -276,7 +292,8 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
                                             part.empty() ? "" : ": " + part + " is not finite there"));
   }
   if (!start.is_consistent) {
-    const std::string row = start.worst_row >= 0 ? mechanism.rows()[static_cast<std::size_t>(start.worst_row)] : "";
+    if (start.worst_row < 0 || !std::isfinite(start.gap)) throw InvalidInput(where, immense_numbers(mechanism));
+    const std::string row = mechanism.rows()[static_cast<std::size_t>(start.worst_row)];
     if (!start.redundant.empty())
       throw InvalidInput(where, fmt::format("the joints cannot be assembled: they contradict each other; \"{}\" stays "
                                             "apart by {:.4g} {}, and {} can only repeat what other joints say",
