@@ -271,6 +271,33 @@ TEST(MechanismMessages, NameMassesAndPlacesThatCannotBeComputedWith) {
   EXPECT_THAT(refusal(replaced(cart, "at = [0.0, 0.0]", "at = [1e300, 0.0]")), Not(HasSubstr("\"\"")));
 }
 
+TEST(MechanismMessages, TellModesOfWhatIsHeldAndHowFastItWouldMove) {
+  const std::string modes = replaced(cart.substr(0, cart.find("lock = ")), "velocity = [1.0, 0.0]\n", "") +
+                            "KEYS\n[[analysis]]\nname = \"modes\"\ntype = \"modes\"\n";
+  // 3 N on 1 kg.
+  const MechanismStudy pushed(replaced(modes, "KEYS", "stiffness = 1.0\nforce = \"3\""));
+  EXPECT_THAT(pushed.report.warnings, Contains(HasSubstr("\"cart.x\" accelerates by 3 m/s2")));
+  EXPECT_THAT(pushed.report.findings, IsEmpty());
+  const MechanismStudy driven(replaced(modes, "KEYS", "drive = \"t\""));
+  EXPECT_THAT(driven.report.findings, Contains(HasSubstr("the drive of \"rail\" is held still")));
+}
+
+// Weight on a dry guide, which would hold it: statics do not know.
+TEST(MechanismMessages, TellThatEquilibriaLeaveOutFriction) {
+  const std::string told = "equilibria leave out the friction of joints, which this model has";
+  const std::string weight = "[gravity]\nacceleration = [-9.81, 0.0]\n";
+  const std::string dry =
+      testing::block_in_guide(testing::in_plane, 0.0, "friction = { coefficient = 1, preload = 50 }");
+  for (const std::string task : {"type = \"static\"\n", "type = \"modes\"\nabout = \"static\"\n",
+                                 "type = \"transient\"\ninitial = \"static\"\nstep = 0.01\nduration = 1.0\n"}) {
+    const std::string analysis = "[[analysis]]\nname = \"run\"\n" + task;
+    EXPECT_THAT(testing::verdict(dry + weight + analysis), HasSubstr(told)) << task;
+    EXPECT_THAT(testing::verdict(testing::block_in_guide(testing::in_plane, 0.0, "") + weight + analysis),
+                AllOf(HasSubstr("no equilibrium was found"), Not(HasSubstr(told))))
+        << task;
+  }
+}
+
 // Parts of structures that a mechanism would pass over.
 TEST(MechanismMessages, RefuseWhatMechanismsHaveNot) {
   const std::string block = testing::block_in_guide(testing::in_plane, 0.0, "") + testing::transient("0.01", 0.1);

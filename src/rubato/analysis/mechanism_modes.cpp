@@ -6,6 +6,7 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,10 @@ system::State at_rest(const system::State& start, const system::Mechanism& mecha
   Index place = 0;
   const double most = state.acceleration.size() > 0 ? state.acceleration.cwiseAbs().maxCoeff(&place) : 0.0;
   if (product.norm() > share * force.norm() && most > round_off)
-    warnings.push_back(
-        fmt::format("the configuration is no equilibrium: \"{}\" accelerates by {:.4g}; about = \"static\" "
-                    "finds one",
-                    mechanism.coordinates()[static_cast<std::size_t>(place)], most));
+    warnings.push_back(fmt::format(
+        "the configuration is no equilibrium: \"{}\" accelerates by {:.4g} {}; about = \"static\" finds one",
+        mechanism.coordinates()[static_cast<std::size_t>(place)], most,
+        mechanism.model().is_rotation[static_cast<std::size_t>(place)] != 0 ? "rad/s2" : "m/s2"));
   return state;
 }
 
@@ -61,6 +62,15 @@ MechanismModesPlan::Reached reached_by(const std::string& title, const model::Re
   throw InvalidInput(description.analysis_where,
                      fmt::format("{}about names \"{}\", which is no transient of this study{}", title,
                                  description.analysis, suggestion(description.analysis, known)));
+}
+
+/// Drives take no part in modes, as if they were locked; empty: there are none.
+std::string held_drives(const model::Mechanism& model) {
+  std::vector<std::string> names;
+  for (const auto& drive : model.drives) names.push_back("\"" + drive.name + "\"");
+  if (names.empty()) return {};
+  return fmt::format("the drive{} of {} {} held still: these are the modes of what is left",
+                     names.size() == 1 ? "" : "s", fmt::join(names, ", "), names.size() == 1 ? "is" : "are");
 }
 
 class Listener final : public integrate::Observer {
@@ -99,7 +109,7 @@ system::State reach(const std::string& name, const MechanismModesPlan::Reached& 
     return at_rest(held, mechanism, report.warnings);
   }
   const MechanismStatic found = equilibrium_near(march.state(), mechanism);
-  report.message = found.complaint(mechanism);
+  report.message = with_friction_told(found.complaint(mechanism), mechanism);
   if (!report.message.empty()) report.status = RunStatus::failed;
   return found.state;
 }
@@ -137,7 +147,7 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
   }
   plan.about_equilibrium = true;
   MechanismStatic found = equilibrium_near(plan.state, mechanism);
-  plan.failure = found.complaint(mechanism);
+  plan.failure = with_friction_told(found.complaint(mechanism), mechanism);
   plan.state = std::move(found.state);
   return plan;
 }
@@ -162,6 +172,8 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
     report.findings.push_back(fmt::format("about {}where \"{}\" is at t = {} s",
                                           plan.reached->settles ? "the equilibrium next to " : "",
                                           plan.reached->analysis, plan.reached->time));
+  const std::string drives = held_drives(mechanism.model());
+  if (!drives.empty()) report.findings.push_back(drives);
   report.statistics = {{"freedoms", std::to_string(modes.freedoms)},
                        {"residual_free", fmt::format("{:.1e}", modes.found.residual)}};
   if (modes.leaves_out_skew)

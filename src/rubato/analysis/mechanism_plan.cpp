@@ -317,6 +317,12 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
   return start.state;
 }
 
+std::string with_friction_told(const std::string& complaint, const system::Mechanism& mechanism) {
+  if (complaint.empty() || mechanism.model().frictions.empty()) return complaint;
+  return complaint +
+         "; equilibria leave out the friction of joints, which this model has: let a transient come to rest";
+}
+
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::Mechanism& mechanism) {
   const auto is_rotation = [&](Index i) { return mechanism.model().is_rotation[static_cast<std::size_t>(i)] != 0; };
@@ -370,7 +376,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   if (description.initial) {
     refuse_displacements(title, *description.initial);
     const MechanismStatic found = equilibrium_near(transient.start, mechanism);
-    plan.failure = found.complaint(mechanism);
+    plan.failure = with_friction_told(found.complaint(mechanism), mechanism);
     if (plan.failure.empty()) {
       if (!found.is_stable)
         plan.warnings.push_back(

@@ -25,6 +25,9 @@ struct MechanismPlan {
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
                               std::vector<std::string>& warnings, bool moves = true);
 
+/// Why an equilibrium was not found, and that friction, which equilibria leave out, might hold the mechanism.
+std::string with_friction_told(const std::string& complaint, const system::Mechanism& mechanism);
+
 /// What is asked for, or every coordinate: displacements, then rotations. Throws InvalidInput for an unknown name.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::Mechanism& mechanism);

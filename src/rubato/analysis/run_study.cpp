@@ -217,6 +217,11 @@ AnalysisOutline check_mechanism(const model::AnalysisDescription& analysis, cons
   refuse_of_mechanism(analysis);
 }
 
+RunReport told_of_friction(RunReport report, const system::Mechanism& mechanism) {
+  report.message = with_friction_told(report.message, mechanism);
+  return report;
+}
+
 RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, const StudyInput& input,
                                  RunContext& context) {
   const system::Mechanism& mechanism = *input.mechanism;
@@ -225,7 +230,8 @@ RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, con
                          plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters),
                          mechanism, context);
   if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task))
-    return run_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism, context);
+    return told_of_friction(run_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism, context),
+                            mechanism);
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
     return run_mechanism_modes(analysis.name,
                                plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input), mechanism,
