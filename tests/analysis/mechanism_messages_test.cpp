@@ -298,6 +298,22 @@ TEST(MechanismMessages, TellThatEquilibriaLeaveOutFriction) {
   }
 }
 
+// 4,096 samples of 1 s: two on a swing at 1,024 Hz. At 4,096 Hz they see nothing at all.
+TEST(MechanismMessages, WarnOfLoadsThatSwingFasterThanTheirSamples) {
+  const auto warnings = [](int hertz, const std::string& step) {
+    return MechanismStudy(
+               testing::block_in_guide(testing::in_plane, 0.0, "friction = { coefficient = 1, preload = 50 }") +
+               "[[force]]\non = \"block.x\"\nexpression = \"sin(2*pi*" + std::to_string(hertz) + "*t)\"\n" +
+               testing::transient(step, 1.0))
+        .report.warnings;
+  };
+  const std::string step = "{ tolerance = 1e-2 }";
+  EXPECT_THAT(warnings(200, step), IsEmpty());
+  for (const int hertz : {1300, 3000, 4096, 4100, 9000})
+    EXPECT_THAT(warnings(hertz, step), Contains(HasSubstr("swings faster than 4096 samples of the run tell"))) << hertz;
+  EXPECT_THAT(warnings(3000, "{ tolerance = 1e-2, largest = 1e-3 }"), IsEmpty());
+}
+
 // Parts of structures that a mechanism would pass over.
 TEST(MechanismMessages, RefuseWhatMechanismsHaveNot) {
   const std::string block = testing::block_in_guide(testing::in_plane, 0.0, "") + testing::transient("0.01", 0.1);

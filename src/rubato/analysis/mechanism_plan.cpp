@@ -1,4 +1,5 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
+#include <rubato/analysis/mechanism_load_swings.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace rubato::analysis {
 namespace {
@@ -40,52 +40,6 @@ Index find(const std::string& name, const Location& where, const system::Mechani
   if (found != known.end()) return static_cast<Index>(found - known.begin());
   throw InvalidInput(where,
                      fmt::format("observe names \"{}\", which is no coordinate{}", name, suggestion(name, known)));
-}
-
-/// The shortest time between two turns of a law, of more than a thousandth of its range, as 4096 samples see it.
-double shortest_swing(const model::TimeLaw& law, double duration) {
-  constexpr int samples = 4096;
-  constexpr double small = 1e-3;
-  std::vector<double> values(samples + 1);
-  for (int i = 0; i <= samples; ++i)
-    values[static_cast<std::size_t>(i)] = model::value(law, duration * i / samples, model::Side::right);
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double least = small * (*high - *low);
-  double shortest = HUGE_VAL, turned_at = -1.0, extreme = values[0], direction = 0.0, extreme_at = 0.0;
-  for (int i = 1; i <= samples; ++i) {
-    const double value = values[static_cast<std::size_t>(i)], t = duration * i / samples;
-    if (direction == 0.0 && std::abs(value - extreme) > least) direction = value > extreme ? 1.0 : -1.0;
-    if (direction * (value - extreme) > 0.0) {
-      extreme = value;
-      extreme_at = t;
-    } else if (direction != 0.0 && direction * (extreme - value) > least) {
-      if (turned_at >= 0.0) shortest = std::min(shortest, extreme_at - turned_at);
-      turned_at = extreme_at;
-      direction = -direction;
-      extreme = value;
-      extreme_at = t;
-    }
-  }
-  return shortest;
-}
-
-/// A sixth of the shortest period of a harmonic load. While dry joints or rigid stops hold a mechanism nothing else
-/// tells how fast a formula swings, which may let them go.
-double period_limit(const system::Mechanism& mechanism, double duration) {
-  const auto& locks = mechanism.model().locks;
-  const bool may_rest =
-      !mechanism.model().frictions.empty() ||
-      std::any_of(locks.begin(), locks.end(), [](const model::Lock& lock) { return lock.is_rigid(); });
-  double fastest = 0.0;
-  const auto take = [&](const model::TimeLaw& law) {
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&law))
-      fastest = std::max(fastest, std::abs(harmonic->angular_frequency));
-    else if (may_rest && std::holds_alternative<model::FormulaLaw>(law))
-      fastest = std::max(fastest, std::numbers::pi / shortest_swing(law, duration));
-  };
-  for (const auto& force : mechanism.model().forces) take(force.law);
-  for (const auto& law : mechanism.model().following_laws) take(law);
-  return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest / 6.0 : HUGE_VAL;
 }
 
 /// @param remedies  what else than more rows helps
@@ -136,7 +90,7 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
                            "solves, so that steps of mechanisms always end there; remove it");
   plan.locate_events = true;
   plan.rebuild = description.rebuild;
-  const double largest = std::min(duration / 50.0, period_limit(mechanism, duration));
+  const double largest = std::min(duration / 50.0, period_limit(mechanism.model(), duration));
   plan_step_range(title, description, parameters, duration,
                   std::min(duration, positive_or(description.largest, largest, title + "largest", parameters)), plan);
   const bool is_jump = description.estimator == "inertia_jump" || (description.estimator.empty() && is_paper);
@@ -389,6 +343,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   if (plan.failure.empty()) settle_start(where, mechanism, transient.duration, transient.start);
   warn_of_locks_behind(mechanism, transient.start, plan.warnings);
   if (description.automatic_step) {
+    if (!description.automatic_step->largest) warn_of_fast_swings(mechanism.model(), transient.duration, plan.warnings);
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
                                          transient.start, parameters, transient.duration);
   } else {
