@@ -232,6 +232,13 @@ TEST(MechanismMessages, NameTheStrutWhoseEndsMeet) {
   }
 }
 
+// A kink of the drive where the ends meet: no velocities go on from there.
+TEST(MechanismMessages, NameTheStrutWhoseEndsMeetWhereItsDriveTurns) {
+  const MechanismStudy ran(replaced(shortened("0.01", 2.0), "1 - t", "abs(1 - t)"));
+  EXPECT_EQ(ran.report.status, analysis::RunStatus::failed);
+  EXPECT_THAT(ran.report.message, HasSubstr("at t = 1 s the ends of the strut \"jack\" meet: at length 0"));
+}
+
 TEST(MechanismMessages, TellThatAToleranceLiesBelowWhatNewtonsMethodLeaves) {
   const MechanismStudy ran(shortened("{ tolerance = 1e-13 }", 0.1));
   EXPECT_EQ(ran.report.status, analysis::RunStatus::failed);

@@ -172,7 +172,7 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
   using integrate::StepOutcome;
   const StepOutcome outcome = report.step.outcome;
   const bool is_stuck = outcome == StepOutcome::too_small || outcome == StepOutcome::crawls;
-  if (outcome != StepOutcome::no_way_on) {
+  if (outcome != StepOutcome::no_way_on || transitions.chattering < 0) {
     const std::string strut = collapsed_strut(mechanism, state);
     if (!strut.empty())
       return fmt::format(
