@@ -155,7 +155,7 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(
       verdict_with("at = \"pi/2\"", "at = 0.3"),
       "study.toml:21:8: error: joint \"A\": lock: the joint starts at its lock, 0.3; say from which side it comes "
-      "by another angle");
+      "by another angle, a little before it, from which initial = \"static\" (of a transient) lets it come to rest");
   EXPECT_EQ(verdict_with("axis = [1.0, 0.0]", "axis = [0.0, 0.0]"),
             "study.toml:35:8: error: joint \"C\": the axis [0, 0] has no length");
   EXPECT_EQ(verdict_with("5 - 2*rate", "5 - 2*displacement").substr(0, 44),

@@ -14,13 +14,24 @@
 
 namespace rubato::analysis {
 
+namespace {
+
+/// Which locks hold in an equilibrium.
+std::string held_locks(const system::State& state, const system::Mechanism& mechanism) {
+  std::string names;
+  const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i)
+    if (state.phase[i] != model::lock_open) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", locks[i].name);
+  return names;
+}
+
+}  // namespace
+
 std::string MechanismStatic::complaint(const system::Mechanism& mechanism) const {
-  if (beyond_lock >= 0)
-    return fmt::format("the equilibrium lies beyond the lock of \"{}\"; let a transient come to rest there",
-                       mechanism.model().locks[static_cast<std::size_t>(beyond_lock)].name);
-  if (pulling_lock >= 0)
-    return fmt::format("at the equilibrium the stop of \"{}\" would have to pull; let a transient go on from there",
-                       mechanism.model().locks[static_cast<std::size_t>(pulling_lock)].name);
+  if (unsettled_lock >= 0)
+    return fmt::format(
+        "no equilibrium was found: whether the lock of \"{}\" holds did not settle; let a transient come to rest there",
+        mechanism.model().locks[static_cast<std::size_t>(unsettled_lock)].name);
   if (is_found) return {};
   const std::string left =
       worst < 0 ? std::string()
@@ -50,18 +61,7 @@ MechanismStatic equilibrium_near(const system::State& start, const system::Mecha
   result.worst = found.worst;
   result.load_steps = found.load_steps;
   result.load = found.load;
-  const auto& locks = mechanism.model().locks;
-  for (std::size_t i = 0; i < locks.size(); ++i) {
-    const model::Lock& lock = locks[i];
-    const double beyond = lock.sign * (lock.s.value(result.state.q.data()) - lock.at);
-    if (result.state.phase[i] == model::lock_open) {
-      if (beyond > 0.0) result.beyond_lock = static_cast<int>(i);
-    } else if (!lock.is_latch) {
-      const double pressing =
-          lock.is_rigid() ? lock.sign * result.state.multiplier[mechanism.first_row(lock.joint)] : beyond;
-      if (pressing < 0.0) result.pulling_lock = static_cast<int>(i);
-    }
-  }
+  result.unsettled_lock = found.unsettled_lock;
   return result;
 }
 
@@ -88,6 +88,15 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   RunReport report;
   const system::State start = assembled_start(where, mechanism, report.warnings, false);
   const MechanismStatic found = equilibrium_near(start, mechanism);
+  report.statistics = {{"iterations", std::to_string(found.iterations)},
+                       {"load_steps", std::to_string(found.load_steps)},
+                       {"residual", fmt::format("{:.2e}", found.residual)},
+                       {"stable", found.is_stable ? "yes" : "no"}};
+  report.message = found.complaint(mechanism);
+  if (!report.message.empty()) {
+    report.status = RunStatus::failed;
+    return report;
+  }
   JointCoordinates joints(mechanism);
   JointReactions reactions(mechanism);
   JointLaws laws(mechanism);
@@ -105,21 +114,14 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   joints.append_displacements(row);
   reactions.append(joints.motion(), found.state.multiplier, row);
   laws.append(joints.motion(), row);
-  if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
-    context.sink.open(layout)->append(row);
-  report.statistics = {{"iterations", std::to_string(found.iterations)},
-                       {"load_steps", std::to_string(found.load_steps)},
-                       {"residual", fmt::format("{:.2e}", found.residual)},
-                       {"stable", found.is_stable ? "yes" : "no"}};
-  report.message = found.complaint(mechanism);
-  if (found.is_found && found.load_steps > 0)
+  context.sink.open(layout)->append(row);
+  if (found.load_steps > 0)
     report.findings.push_back(fmt::format(
         "the loads were raised in {} steps: under all of them at once no equilibrium was found", found.load_steps));
-  if (!report.message.empty()) {
-    report.status = RunStatus::failed;
-  } else if (!found.is_stable) {
+  if (const std::string held = held_locks(found.state, mechanism); !held.empty())
+    report.findings.push_back(fmt::format("held by the lock of {}", held));
+  if (!found.is_stable)
     report.findings.push_back("the equilibrium is not stable: a motion that the joints leave goes away from it");
-  }
   return report;
 }
 

@@ -14,12 +14,11 @@ struct MechanismStatic {
   system::State state;  ///< at rest, with the multipliers that hold it; the best found where it is not one
   bool is_found = false, is_stable = false;
   int iterations = 0;
-  double residual = 0.0;  ///< largest force left [N], [N m]
-  Index worst = -1;       ///< its coordinate
-  int load_steps = 0;     ///< 0: found with all loads at once
-  double load = 1.0;      ///< the share of the loads in whose equilibrium the state is
-  int beyond_lock = -1;   ///< a lock that the way to it would have reached
-  int pulling_lock = -1;  ///< a stop that holds at the start, and would let go there
+  double residual = 0.0;    ///< largest force left [N], [N m]
+  Index worst = -1;         ///< its coordinate
+  int load_steps = 0;       ///< 0: found with all loads at once
+  double load = 1.0;        ///< the share of the loads in whose equilibrium the state is
+  int unsettled_lock = -1;  ///< one that was met and let go without end
 
   /// Why it is no equilibrium to go on from; empty where it is one.
   std::string complaint(const system::Mechanism& mechanism) const;
@@ -38,7 +37,8 @@ std::vector<std::string> check_mechanism_static(const std::string& name, const L
                                                 const system::Mechanism& mechanism);
 
 /// One row: the positions of what is observed, the coordinates that the joints leave free, and the reactions. An
-/// equilibrium that is not found is a failure; the best configuration is written. One that is not stable is told.
+/// equilibrium that is not found is a failure, and nothing is written. One that is not stable is told, and locks that
+/// hold are.
 RunReport run_mechanism_static(const std::string& name, const Location& where,
                                const model::StaticDescription& description, const system::Mechanism& mechanism,
                                RunContext& context);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/system/mechanism.hpp>
 
@@ -18,15 +19,6 @@ struct MechanismPlan {
 
   std::string summary() const;
 };
-
-/// The start of a mechanism on its constraints. What had to move, and constraints that repeat others, are told in
-/// `warnings`. Throws InvalidInput, naming the joints and by how much they are apart, where they cannot be assembled.
-/// @param moves  what starts there goes on with its velocities: that they had to change is told
-system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
-                              std::vector<std::string>& warnings, bool moves = true);
-
-/// Why an equilibrium was not found, and that friction, which equilibria leave out, might hold the mechanism.
-std::string with_friction_told(const std::string& complaint, const system::Mechanism& mechanism);
 
 /// What is asked for, or every coordinate: displacements, then rotations. Throws InvalidInput for an unknown name.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,

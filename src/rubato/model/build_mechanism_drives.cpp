@@ -23,8 +23,9 @@ Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, c
   if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
   if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
   if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
-    throw InvalidInput(given.where, fmt::format("{}: lock: the joint starts at its lock, {}; say from which side it "
-                                                "comes by another {}",
+    throw InvalidInput(given.where, fmt::format("{0}: lock: the joint starts at its lock, {1}; say from which side it "
+                                                "comes by another {2}, a little before it, from which initial = "
+                                                "\"static\" (of a transient) lets it come to rest",
                                                 part, lock.at, is_angle ? "angle" : "displacement"));
   if (joint.type == JointDescription::Type::strut && !(lock.at > 0.0))
     throw InvalidInput(given.at.where,

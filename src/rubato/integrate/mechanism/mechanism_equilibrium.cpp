@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
+#include <rubato/integrate/mechanism/met_locks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,7 @@ double extent_of(const system::Mechanism& mechanism, const Vector& q) {
 class Search {
  public:
   Search(system::MechanismEquations& equations, const system::State& given, const EquilibriumPlan& plan)
-      : equations_(equations), mechanism_(equations.mechanism()), plan_(plan) {
+      : equations_(equations), mechanism_(equations.mechanism()), plan_(plan), locks_(mechanism_, given) {
     const Index n = mechanism_.size(), c = mechanism_.constraint_count();
     found_.state = given;
     std::fill(found_.state.rubbing.begin(), found_.state.rubbing.end(), model::friction_free);
@@ -36,6 +37,7 @@ class Search {
     constraint_.resize(c);
     next_ = given.q;
     extent_ = extent_of(mechanism_, given.q);
+    (void)locks_.meet(found_.state, extent_);
     reference_ =
         mechanism_.reference() > 0.0 ? mechanism_.reference() : extent_ * std::sqrt(mechanism_.mass().diagonal().sum());
   }
@@ -56,15 +58,23 @@ class Search {
       if (!std::isfinite(correction.size)) return found_;
       if (climbs) {
         // Newton's method would climb, and a larger shift leads downhill; unless nothing is left to go.
-        if (is_small(correction) && stands()) return found_;
+        if (is_small(correction) && stands() && settles()) return found_;
         shift *= 10.0;
         continue;
       }
-      advance(correction);
-      if (is_small(correction) && shift <= settled * scale_) {
+      bool has_changed = advance(correction);
+      if (!has_changed && is_small(correction) && shift <= settled * scale_) {
         found_.is_found = true;
-        found_.is_stable = factorise(least_shift * scale_) && equations_.is_positive();
-        return found_;
+        if (settles()) {
+          found_.is_stable = factorise(least_shift * scale_) && equations_.is_positive();
+          return found_;
+        }
+        has_changed = true;
+      }
+      if (has_changed) {
+        shift = std::max(shift, first_shift * scale_);
+        last = HUGE_VAL;
+        continue;
       }
       // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
       const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
@@ -79,13 +89,13 @@ class Search {
   MechanismEquilibrium near(double load) {
     constexpr int enough = 30;  // it converges in ten, or not at all
     scale_ = stiffness_per_mass();
-    for (found_.iterations = 0; found_.iterations < enough; ++found_.iterations) {
+    for (found_.iterations = 0; found_.iterations < enough * (1 + locks_.changes()); ++found_.iterations) {
       if (!factorise(0.0, load)) return found_;
       const Correction correction = correct();
       if (!std::isfinite(correction.size)) return found_;
-      advance(correction);
-      if (!is_small(correction)) continue;
+      if (advance(correction) || !is_small(correction)) continue;
       found_.is_found = true;
+      if (!settles()) continue;
       found_.is_stable = factorise(least_shift * scale_, load) && equations_.is_positive();
       return found_;
     }
@@ -117,11 +127,20 @@ class Search {
     return {longest_share(), std::sqrt(std::max(force_.dot(product_), 0.0))};
   }
 
-  void advance(const Correction& correction) {
+  /// Returns whether that meets a lock.
+  bool advance(const Correction& correction) {
     system::State& state = found_.state;
     mechanism_.retract(state.q, correction.share * force_, next_);
     std::swap(state.q, next_);
     state.multiplier += correction.share * constraint_;
+    return locks_.meet(state, extent_);
+  }
+
+  /// Whether all locks that hold press in the equilibrium that is found; those that would pull are opened.
+  bool settles() {
+    found_.is_found = !locks_.release(found_.state, extent_) && locks_.unsettled() < 0;
+    found_.unsettled_lock = locks_.unsettled();
+    return found_.is_found || found_.unsettled_lock >= 0;
   }
 
   bool is_small(const Correction& correction) const {
@@ -133,8 +152,7 @@ class Search {
     if (!factorise(least_shift * scale_)) return false;
     const bool is_stable = equations_.is_positive();
     const Correction correction = correct();
-    if (!is_small(correction)) return false;
-    advance(correction);
+    if (!is_small(correction) || advance(correction)) return false;
     found_.is_found = true;
     found_.is_stable = is_stable;
     return true;
@@ -182,6 +200,7 @@ class Search {
   system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
   EquilibriumPlan plan_;
+  MetLocks locks_;
   MechanismEquilibrium found_;
   Vector force_, product_, constraint_, next_;
   double extent_ = 1.0, reference_ = 1.0, scale_ = 1.0;
@@ -223,7 +242,7 @@ MechanismEquilibrium by_load_steps(system::MechanismEquations& equations, const 
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan) {
   MechanismEquilibrium at_once = Search(equations, given, plan).downhill();
-  if (at_once.is_found) return at_once;
+  if (at_once.is_found || at_once.unsettled_lock >= 0) return at_once;
   MechanismEquilibrium raised = by_load_steps(equations, given, plan);
   raised.iterations += at_once.iterations;
   if (raised.load > 0.0) return raised;

@@ -17,12 +17,13 @@ struct EquilibriumPlan {
 struct MechanismEquilibrium {
   system::State state;  ///< at rest, with the multipliers that hold it; the best found where it is not one
   bool is_found = false;
-  bool is_stable = false;  ///< no motion that the constraints leave goes downhill from it
-  int iterations = 0;      ///< of all load steps
-  int load_steps = 0;      ///< 0: found with all loads at once
-  double load = 1.0;       ///< the share of the loads in whose equilibrium the state is; 1 where it is found
-  double residual = 0.0;   ///< largest force that is left [N], [N m]
-  Index worst = -1;        ///< its coordinate
+  bool is_stable = false;   ///< no motion that the constraints leave goes downhill from it
+  int iterations = 0;       ///< of all load steps
+  int load_steps = 0;       ///< 0: found with all loads at once
+  double load = 1.0;        ///< the share of the loads in whose equilibrium the state is; 1 where it is found
+  double residual = 0.0;    ///< largest force that is left [N], [N m]
+  Index worst = -1;         ///< its coordinate
+  int unsettled_lock = -1;  ///< one that was met and let go without end
 };
 
 /// The configuration in which nothing moves,  f(q, 0, t) + G^T multiplier = 0,  g(q, t) = 0,  near a given one.
@@ -35,6 +36,8 @@ struct MechanismEquilibrium {
 /// equilibrium of the last by Newton's method alone: a step that fails is halved, the next after one that succeeds
 /// twice as long. So the way of a structure under a growing load is followed, as far as no limit point stops it,
 /// through equilibria that are not stable too. Drives are held where they are at that time; friction is left out.
+/// Locks that the way meets hold as long as they press, those that held at the start too; latches that did hold for
+/// good.
 /// @param given  t, configuration and phases of locks count
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan = {});

@@ -1,0 +1,57 @@
+#include <rubato/integrate/mechanism/met_locks.hpp>
+
+#include <cmath>
+
+namespace rubato::integrate {
+
+MetLocks::MetLocks(const system::Mechanism& mechanism, const system::State& given) : mechanism_(mechanism) {
+  const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i)
+    holds_for_good_.push_back(locks[i].is_latch && given.phase[i] == model::lock_engaged);
+}
+
+double MetLocks::beyond(std::size_t lock, const system::State& state) const {
+  const model::Lock& of = mechanism_.model().locks[lock];
+  return of.sign * (of.s.value(state.q.data()) - of.at);
+}
+
+double MetLocks::nothing(std::size_t lock, double extent) const {
+  constexpr double share = 1e-9;
+  return share * (mechanism_.model().locks[lock].s.is_angle() ? 1.0 : extent);
+}
+
+bool MetLocks::may_change(std::size_t lock) {
+  constexpr int most_a_lock = 20;
+  if (changes_ < most_a_lock * static_cast<int>(holds_for_good_.size())) return ++changes_, true;
+  unsettled_ = static_cast<int>(lock);
+  return false;
+}
+
+bool MetLocks::meet(system::State& state, double extent) {
+  bool has_met = false;
+  for (std::size_t i = 0; i < holds_for_good_.size(); ++i) {
+    if (state.phase[i] != model::lock_open || !(beyond(i, state) > nothing(i, extent)) || !may_change(i)) continue;
+    state.phase[i] = model::lock_engaged;
+    has_met = true;
+  }
+  return has_met;
+}
+
+bool MetLocks::release(system::State& state, double extent) {
+  constexpr double share = 1e-9;  // of the largest reaction: that of a lock which nothing presses
+  const double no_force = share * (state.multiplier.size() > 0 ? state.multiplier.cwiseAbs().maxCoeff() : 0.0);
+  bool has_released = false;
+  for (std::size_t i = 0; i < holds_for_good_.size(); ++i) {
+    const model::Lock& lock = mechanism_.model().locks[i];
+    if (state.phase[i] == model::lock_open || holds_for_good_[i] != 0) continue;
+    const bool pulls = lock.is_rigid() ? lock.sign * state.multiplier[mechanism_.first_row(lock.joint)] < -no_force
+                                       : beyond(i, state) < -nothing(i, extent);
+    if (!pulls || !may_change(i)) continue;
+    state.phase[i] = model::lock_open;
+    if (lock.is_rigid()) state.multiplier[mechanism_.first_row(lock.joint)] = 0.0;
+    has_released = true;
+  }
+  return has_released;
+}
+
+}  // namespace rubato::integrate

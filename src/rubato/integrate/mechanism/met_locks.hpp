@@ -1,0 +1,37 @@
+#pragma once
+
+#include <rubato/system/mechanism.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// Which locks hold while an equilibrium is looked for: those that the way to it meets, until they would have to pull.
+/// What the way leads beyond engages at once, so that nothing falls through its stop; what then pulls at a place where
+/// all forces balance lets go. A latch that held at the start holds for good; one that is met is tried like a stop.
+class MetLocks {
+ public:
+  MetLocks(const system::Mechanism& mechanism, const system::State& given);
+
+  /// Engages open locks that the state lies beyond. Returns whether there were any.
+  /// @param extent  of the mechanism [m]
+  bool meet(system::State& state, double extent);
+  /// Opens locks that pull in an equilibrium, whose multipliers the state has. Returns whether there were any.
+  bool release(system::State& state, double extent);
+
+  int changes() const { return changes_; }
+  /// The lock that changed last where there was no end of it, or -1.
+  int unsettled() const { return unsettled_; }
+
+ private:
+  bool may_change(std::size_t lock);
+  double beyond(std::size_t lock, const system::State& state) const;
+  /// A way beyond a lock that is none [rad] or [m].
+  double nothing(std::size_t lock, double extent) const;
+
+  const system::Mechanism& mechanism_;
+  std::vector<char> holds_for_good_;
+  int changes_ = 0, unsettled_ = -1;
+};
+
+}  // namespace rubato::integrate
