@@ -61,12 +61,16 @@ TEST(MechanismModeShapes, OfAPendulumHaveAModalMassOfOne) {
 TEST(MechanismModeShapes, StandBesideTheConfigurationAboutWhichTheyAre) {
   const MechanismStudy ran(pendulum("about = \"static\""));
   const auto& nodes = ran.table("modes.nodes");
-  ASSERT_EQ(nodes.rows.size(), 2u);
+  ASSERT_EQ(nodes.rows.size(), 3u);
   EXPECT_NEAR(ran.at(0, "modes.nodes", "x"), 0.0, found);
   EXPECT_NEAR(ran.at(0, "modes.nodes", "y"), -0.5, found);
   EXPECT_NEAR(std::cos(ran.at(0, "modes.nodes", "rotation_z")), 0.0, found);
-  EXPECT_NEAR(ran.at(1, "modes.nodes", "x"), 0.0, found);  // the pin
-  EXPECT_NEAR(ran.at(1, "modes.nodes", "y"), 0.0, found);
+  for (const std::size_t pin : {1u, 2u}) {  // on the bob and on the ground
+    EXPECT_NEAR(ran.at(pin, "modes.nodes", "x"), 0.0, found);
+    EXPECT_NEAR(ran.at(pin, "modes.nodes", "y"), 0.0, found);
+  }
+  EXPECT_EQ(ran.at(0, "modes.joints", "first"), 2.0);
+  EXPECT_EQ(ran.at(0, "modes.joints", "second"), 1.0);
   EXPECT_EQ(nodes.layout.attributes[1].second, "shape");
   EXPECT_EQ(nodes.layout.attributes[2].second, "3");
   EXPECT_EQ(ran.table("modes.lines").rows.size(), 1u);

@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 namespace rubato::analysis {
 namespace {
 
@@ -52,45 +50,6 @@ TEST(StructureTables, CallASupportedNodeOfTrussesPinned) {
   testing::MemorySink sink;
   write_structure("run", model::build(description, {}).structure, sink);
   EXPECT_EQ(sink.tables.at("run.nodes").rows[0].back(), 2);
-}
-
-TEST(StructureTables, TellWhereABodyCarriesItsJoints) {
-  model::Mechanism m(2);
-  const Index crank = m.add_node("crank", {0.5, 0.0, std::numbers::pi / 2.0});
-  const model::PlanePoint joint = m.plane_point(crank, 0.0, 0.0);
-  const model::DrawnLine::End at{crank, {joint.offset[0], joint.offset[1], 0.0}}, still{};
-  m.lines = {{model::DrawnLine::Kind::body, {crank, {}}, at}, {model::DrawnLine::Kind::link, at, still}};
-  testing::MemorySink sink;
-  write_structure("run", m, sink);
-  const auto& nodes = sink.tables.at("run.nodes").rows;
-  ASSERT_EQ(nodes.size(), 3u);
-  EXPECT_EQ(nodes[0], (std::vector<double>{0, 0.5, 0.0, 0.0, 0, 0, 0.0, 0.0, 0.0}));
-  EXPECT_EQ(nodes[1][5], 0.0);           // carried by the crank
-  EXPECT_NEAR(nodes[1][6], 0.0, 1e-16);  // (-0.5, 0) of the world, in axes that are turned by a right angle
-  EXPECT_NEAR(nodes[1][7], 0.5, 1e-16);
-  EXPECT_EQ(nodes[2][5], -1.0);
-  EXPECT_EQ(nodes[2][4], 2.0);  // pinned
-  const auto& lines = sink.tables.at("run.lines").rows;
-  EXPECT_EQ(lines[0], (std::vector<double>{1, 0, 1, 1}));
-  EXPECT_EQ(lines[1], (std::vector<double>{2, 1, 2, 2}));
-  EXPECT_EQ(sink.tables.at("run.nodes").layout.attributes.back().second, "3");
-}
-
-// A body turned by a right angle about x: its own z points along -y of the world.
-TEST(StructureTables, TellWhereABodyInSpaceCarriesItsJoints) {
-  model::Mechanism m(3);
-  const Index body =
-      m.add_space_node("body", {1.0, 2.0, 3.0}, numerics::rotation_of({std::numbers::pi / 2.0, 0.0, 0.0}));
-  m.lines = {{model::DrawnLine::Kind::body, {body, {}}, {body, {0.5, 0.0, 0.25}}}};
-  testing::MemorySink sink;
-  write_structure("run", m, sink);
-  const auto& nodes = sink.tables.at("run.nodes").rows;
-  ASSERT_EQ(nodes.size(), 2u);
-  EXPECT_NEAR(nodes[1][1], 1.5, 1e-15);
-  EXPECT_NEAR(nodes[1][2], 1.75, 1e-15);
-  EXPECT_NEAR(nodes[1][3], 3.0, 1e-15);
-  EXPECT_EQ(nodes[1][8], 0.25);
-  EXPECT_EQ(sink.tables.at("run.nodes").layout.attributes.back().second, "6");
 }
 
 TEST(StructureTables, AreNotWrittenForCoordinates) {

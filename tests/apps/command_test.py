@@ -128,7 +128,9 @@ class Command(unittest.TestCase):
         start = [tuple(map(float, row[column:column + 3])) for row in nodes[1:]]
         bodies = 5
         pairs = [(i, j) for j in range(bodies, len(start)) for i in range(bodies, j) if math.dist(start[i], start[j]) < 1e-9]
-        self.assertEqual(len(pairs), 4)  # hinges between rods; those with the ground have one point
+        self.assertEqual(len(pairs), 6)  # hinges, each with a point on both of its parts
+        joints = self.rows("out/motion.joints.csv")
+        self.assertEqual([row[:2] for row in joints[1:]], [[f"hinge {i}", "revolute"] for i in range(1, 7)])
         frames = sorted((self.folder / "out/vtk/motion").glob("*.vtp"))
         self.assertGreater(len(frames), 100)
         for frame in frames:

@@ -1,7 +1,7 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
-#include <rubato/analysis/structure_tables.hpp>
+#include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 

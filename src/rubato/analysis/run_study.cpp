@@ -1,5 +1,6 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
+#include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>

@@ -42,6 +42,19 @@ Solid solid_of(const MechanismAssembly& assembly, const ShapeDescription& shape,
   return {std::numbers::pi * r * r * h, {across, across, 0.5 * r * r}};
 }
 
+/// How a picture shows a shape that has been found to be possible.
+DrawnShape drawn_shape(const MechanismAssembly& assembly, const ShapeDescription& shape, Index node) {
+  const auto length = [&](const Quantity& quantity) { return assembly.positive(quantity, "shape"); };
+  DrawnShape drawn{shape.kind, node, {}};
+  if (shape.kind == ShapeDescription::Kind::box) {
+    for (std::size_t i = 0; i < 3; ++i) drawn.size[i] = length(shape.size[i]);
+    return drawn;
+  }
+  drawn.size.fill(2.0 * length(*shape.radius));
+  if (shape.kind == ShapeDescription::Kind::cylinder) drawn.size[2] = length(*shape.length);
+  return drawn;
+}
+
 Inertia inertia_of_shape(const MechanismAssembly& assembly, const BodyDescription& body, const std::string& part) {
   const Solid solid = solid_of(assembly, *body.shape, part);
   const double mass = body.mass ? assembly.positive(*body.mass, part + "mass")
@@ -173,6 +186,7 @@ void take_body(MechanismAssembly& assembly, const BodyDescription& body) {
     for (Index i = 0; i < assembly.mechanism.dimension; ++i)
       assembly.mechanism.nodes[static_cast<std::size_t>(node)].velocity[static_cast<std::size_t>(i)] = given[i];
   }
+  if (body.shape) assembly.mechanism.drawing.shapes.push_back(drawn_shape(assembly, *body.shape, node));
   assembly.nodes.emplace(body.name, node);
   assembly.extend(assembly.position(node));
   assembly.mass += inertia.mass;

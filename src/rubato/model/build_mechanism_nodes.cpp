@@ -168,7 +168,7 @@ void take_structure(MechanismAssembly& assembly) {
   const std::vector<double> q = mechanism.numbers();
   for (const LineElement& element : structure.elements) {
     const Beam beam = beam_of(assembly, structure, element);
-    mechanism.lines.push_back({DrawnLine::Kind::beam, {beam.first, {}}, {beam.second, {}}});
+    mechanism.drawing.lines.push_back({DrawnLine::Kind::beam, {beam.first, {}}, {beam.second, {}}});
     if (assembly.in_plane())
       take_plane_beam(assembly, beam);
     else

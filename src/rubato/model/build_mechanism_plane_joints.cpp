@@ -12,10 +12,11 @@ namespace {
 void draw(Mechanism& mechanism, const PlanePoint& point) {
   const Index node = point.node.q / plane_numbers;
   if (node == 0 || (point.offset[0] == 0.0 && point.offset[1] == 0.0)) return;
-  mechanism.lines.push_back({DrawnLine::Kind::body, {node, {}}, {node, {point.offset[0], point.offset[1], 0.0}}});
+  mechanism.drawing.lines.push_back(
+      {DrawnLine::Kind::body, {node, {}}, {node, {point.offset[0], point.offset[1], 0.0}}});
 }
 
-DrawnLine::End end_of(const PlanePoint& point) {
+DrawnPoint end_of(const PlanePoint& point) {
   return {point.node.q / plane_numbers, {point.offset[0], point.offset[1], 0.0}};
 }
 
@@ -77,19 +78,20 @@ void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint
                           mechanism.nodes[static_cast<std::size_t>(places.node[0])].numbers[2];
   PlaneCoordinate s;
   s.along = {a, b, {1.0, 0.0}};
+  mechanism.drawing.joints.push_back(drawn_joint(joint, end_of(a), end_of(b), {}));
   switch (joint.type) {
     case Type::rigid:
       mechanism.joints.push_back(make_plane_rigid(joint.name, a, b, relative));
       return;
     case Type::distance:
-      mechanism.lines.push_back({DrawnLine::Kind::link, end_of(a), end_of(b)});
+      mechanism.drawing.lines.push_back({DrawnLine::Kind::link, end_of(a), end_of(b)});
       mechanism.joints.push_back(make_plane_distance(joint.name, a, b, length_of(assembly, joint, part, places)));
       ++assembly.elements;
       return;
     case Type::strut:
       require_law(joint, part);
       (void)length_of(assembly, joint, part, places);
-      mechanism.lines.push_back({DrawnLine::Kind::link, end_of(a), end_of(b)});
+      mechanism.drawing.lines.push_back({DrawnLine::Kind::strut, end_of(a), end_of(b)});
       s.kind = PlaneCoordinate::Kind::length;
       ++assembly.elements;
       break;
@@ -102,6 +104,7 @@ void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint
       require_axis(joint, part);
       s.kind = PlaneCoordinate::Kind::displacement;
       s.along.direction = axis_of(assembly, joint, part, places.node[0]);
+      mechanism.drawing.joints.back().axis = {s.along.direction[0], s.along.direction[1], 0.0};
       mechanism.joints.push_back(make_plane_prismatic(joint.name, a, b, s.along.direction, relative));
       break;
     case Type::cylindrical:

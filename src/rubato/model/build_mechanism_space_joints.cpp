@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rubato::model {
@@ -64,11 +65,19 @@ Matrix3 axes_of_universal(const MechanismAssembly& assembly, const JointDescript
 }
 
 /// A body reaches from its centre of mass to its joints.
-DrawnLine::End draw(Mechanism& mechanism, const SpacePoint& point) {
+DrawnPoint draw(Mechanism& mechanism, const SpacePoint& point) {
   const Index node = point.node.q / space_numbers;
-  const DrawnLine::End end{node, {point.offset[0], point.offset[1], point.offset[2]}};
-  if (node != 0 && point.offset != Axis::Zero()) mechanism.lines.push_back({DrawnLine::Kind::body, {node, {}}, end});
+  const DrawnPoint end{node, {point.offset[0], point.offset[1], point.offset[2]}};
+  if (node != 0 && point.offset != Axis::Zero())
+    mechanism.drawing.lines.push_back({DrawnLine::Kind::body, {node, {}}, end});
   return end;
+}
+
+/// In the axes of the first node.
+std::array<double, 3> drawn_axis(Type type, const Matrix3& axes) {
+  if (type == Type::rigid || type == Type::spherical || type == Type::distance || type == Type::strut) return {};
+  const Axis axis = axes.col(type == Type::universal ? 0 : 2);
+  return {axis[0], axis[1], axis[2]};
 }
 
 SpaceCoordinate angle_between(MechanismAssembly& assembly, const SpaceFrame& first, const SpaceFrame& second,
@@ -202,11 +211,12 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   const SpaceJointPlaces built = places_of(assembly, joint);
   const auto& [part, places, first, second] = built;
   Mechanism& mechanism = assembly.mechanism;
-  const DrawnLine::End one = draw(mechanism, first.point), two = draw(mechanism, second.point);
+  const DrawnPoint one = draw(mechanism, first.point), two = draw(mechanism, second.point);
+  mechanism.drawing.joints.push_back(drawn_joint(joint, one, two, drawn_axis(joint.type, first.axes)));
   if (joint.type == Type::strut) {
     require_law(joint, part);
     (void)length_of(assembly, joint, part, places);
-    mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
+    mechanism.drawing.lines.push_back({DrawnLine::Kind::strut, one, two});
     ++assembly.elements;
     take_coordinate(assembly, joint, built,
                     {SpaceCoordinate::Kind::length, first.point, second.point, PointDistance{}, -1, 0.0}, true, 0.0);
@@ -214,7 +224,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   }
   mechanism.reactions.push_back({mechanism.joints.size(), second.point, joint.type == Type::distance});
   if (joint.type == Type::distance) {
-    mechanism.lines.push_back({DrawnLine::Kind::link, one, two});
+    mechanism.drawing.lines.push_back({DrawnLine::Kind::link, one, two});
     mechanism.joints.push_back(
         make_space_distance(joint.name, first.point, second.point, length_of(assembly, joint, part, places)));
     ++assembly.elements;

@@ -8,6 +8,7 @@
 #include <rubato/model/joints/prescribed_motion.hpp>
 #include <rubato/model/joints/space_coordinate.hpp>
 #include <rubato/model/joints/space_point.hpp>
+#include <rubato/model/mechanism_drawing.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
 
@@ -65,18 +66,6 @@ struct TurnCounter {
   TurnAngle angle;
 };
 
-/// A straight line between two points that nodes carry, for pictures.
-struct DrawnLine {
-  enum class Kind { beam, body, link };
-  struct End {
-    Index node = 0;
-    std::array<double, 3> offset{};  ///< in the axes of the node [m]
-    bool operator==(const End&) const = default;
-  };
-  Kind kind = Kind::beam;
-  End first, second;
-};
-
 /// Nodes, what makes forces between them and what constrains them, with values for everything. Mass is constant: bodies
 /// have their node at the centre of mass, and angular velocities are those of body axes.
 struct Mechanism {
@@ -99,7 +88,7 @@ struct Mechanism {
   std::vector<numerics::TimeFormula> joint_formulas;  ///< laws of joints that switch with time, for when they do
   Axis gravity = Axis::Zero();                        ///< [m/s2]
   double reference = 0.0;                             ///< characteristic size for error measures [m sqrt(kg)]; 0: none
-  std::vector<DrawnLine> lines;
+  MechanismDrawing drawing;
 
   explicit Mechanism(int dimension_ = 2);
 

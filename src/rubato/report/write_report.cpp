@@ -9,9 +9,11 @@
 #include <rubato/report/write_report.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -31,7 +33,10 @@ bool is_modes(const TableSource& table) {
 }
 
 /// A table that is there for the picture of a structure.
-bool is_drawing(const TableSource& table) { return table.name() == "nodes" || table.name() == "lines"; }
+bool is_drawing(const TableSource& table) {
+  constexpr std::array<std::string_view, 4> names{"nodes", "lines", "joints", "shapes"};
+  return std::find(names.begin(), names.end(), table.name()) != names.end();
+}
 
 std::string digest_json(const TableSource& table, const Attributes& analysis) {
   if (is_modes(table)) {
