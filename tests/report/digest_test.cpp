@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -73,6 +74,15 @@ TEST(KeyNumbers, WeighRowsByTheTimeBetweenThem) {
   EXPECT_NEAR(numbers.rms(), std::sqrt(0.1), 1e-12);
   EXPECT_EQ(numbers.largest(), 1.0);
   EXPECT_EQ(numbers.late_amplitude(), 0.0);
+}
+
+TEST(KeyNumbers, TellWhenTheLargestCameFirstAndWhatWasLast) {
+  KeyNumbers numbers(0.0, 3.0);
+  EXPECT_TRUE(std::isnan(numbers.time_of_largest()) && std::isnan(numbers.last()));
+  for (const auto& [t, x] : {std::pair{0.0, 1.0}, {1.0, -4.0}, {2.0, 4.0}, {3.0, 2.0}}) numbers.add(t, x);
+  EXPECT_EQ(numbers.largest(), 4.0);
+  EXPECT_EQ(numbers.time_of_largest(), 1.0);
+  EXPECT_EQ(numbers.last(), 2.0);
 }
 
 TEST(KeyNumbers, OfNothingAreNaNAndOfOneRowItsSize) {

@@ -13,14 +13,17 @@ using testing::HasSubstr;
 /// position(time, coordinate) = time (label + 1), t = row / 2.
 class Ramp : public TableSource {
  public:
-  Ramp(std::size_t rows, std::size_t labels) : rows_(rows) {
+  Ramp(std::size_t rows, std::size_t labels) : Ramp(rows, std::vector<std::string>{}) {
+    for (std::size_t label = 0; label < labels; ++label) variables_[1].labels.push_back("q" + std::to_string(label));
+  }
+  Ramp(std::size_t rows, const std::vector<std::string>& labels) : rows_(rows) {
     variables_.resize(2);
     variables_[0].name = "time";
     variables_[0].unit = "s";
     variables_[1].name = "position";
     variables_[1].unit = "m";
     variables_[1].dimension = "coordinate";
-    for (std::size_t label = 0; label < labels; ++label) variables_[1].labels.push_back("q" + std::to_string(label));
+    variables_[1].labels = labels;
   }
   const std::string& name() const override { return name_; }
   const std::string& row_dimension() const override { return row_dimension_; }
@@ -65,7 +68,16 @@ TEST(TableJson, GivesKeyNumbersOverAllRows) {
   const std::string json = table_json(Ramp(21, 1));
   const double rms = std::sqrt(100.0 / 3.0 * (1.0 + 0.25 / 200.0));
   EXPECT_THAT(json, HasSubstr(R"("key_numbers":[null,[[10,)" + std::to_string(rms).substr(0, 7)));
-  EXPECT_THAT(json, HasSubstr(",0.5]]]"));
+  EXPECT_THAT(json, HasSubstr(",0.5,10,10]]]"));  // the largest and the last come at t = 10
+}
+
+TEST(TableJson, LeavesOutNodesInsideBeamsFirstThenOtherNodes) {
+  const Ramp few(2, std::vector<std::string>{"a.x", "rod:1.x", "rod:2.x", "hinge", "b.x"});
+  EXPECT_THAT(table_json(few, {.labels = 5}), HasSubstr(R"("labels":["a.x","rod:1.x","rod:2.x","hinge","b.x"])"));
+  EXPECT_THAT(table_json(few, {.labels = 3}), HasSubstr(R"("labels":["a.x","hinge","b.x"],"label_count":5)"));
+  // Values are of the labels that are shown: t (label + 1) at t = 1/2.
+  EXPECT_THAT(table_json(few, {.labels = 3}), HasSubstr("[[0,0.5],[0,2],[0,2.5]]"));
+  EXPECT_THAT(table_json(few, {.labels = 1}), HasSubstr(R"("labels":["hinge"])"));
 }
 
 TEST(TableJson, HasASizeThatDoesNotGrowWithTheResults) {

@@ -46,7 +46,10 @@ std::vector<std::size_t> Envelope::rows_of_points(std::size_t rows, std::size_t 
 
 void KeyNumbers::add(double t, double x) {
   if (std::isnan(t) || std::isnan(x)) return;
-  largest_ = std::fmax(largest_, std::abs(x));  // fmax passes over the NaN that stands for nothing
+  if (!(std::abs(x) <= largest_)) {  // NaN stands for nothing
+    largest_ = std::abs(x);
+    time_of_largest_ = t;
+  }
   if (t >= late_from_) {
     late_minimum_ = std::fmin(late_minimum_, x);
     late_maximum_ = std::fmax(late_maximum_, x);

@@ -47,12 +47,14 @@ class KeyNumbers {
   double largest() const { return largest_; }
   double rms() const;                                                              ///< |x| where there is one row only
   double late_amplitude() const { return 0.5 * (late_maximum_ - late_minimum_); }  ///< NaN where nothing is late
+  double time_of_largest() const { return time_of_largest_; }                      ///< the first such t
+  double last() const { return has_previous_ ? previous_x_ : NAN; }                ///< the last x
 
  private:
   double late_from_;
   bool has_previous_ = false;
   double previous_t_ = 0.0, previous_x_ = 0.0, integral_ = 0.0, duration_ = 0.0;
-  double largest_ = NAN, late_minimum_ = NAN, late_maximum_ = NAN;  // until a row comes
+  double largest_ = NAN, time_of_largest_ = NAN, late_minimum_ = NAN, late_maximum_ = NAN;  // until a row comes
 };
 
 }  // namespace rubato::report

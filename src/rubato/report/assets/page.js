@@ -73,7 +73,7 @@ function variable_of(table, name) {
 /** "; the first 24 of 100 coordinates are shown", where labels were left out. */
 function shortened(variable) {
   if (variable.label_count <= variable.labels.length) return "";
-  return ` The first ${variable.labels.length} of ${count_text(variable.label_count)} ${variable.dimension}s are shown; ` +
+  return ` ${variable.labels.length} of ${count_text(variable.label_count)} ${variable.dimension}s are shown; ` +
     "the others are in the results file.";
 }
 
