@@ -399,6 +399,57 @@ class Report(unittest.TestCase):
         self.assertGreater(second[3] - first[3], 20)
         self.assertGreater(first[0] - second[0], 20)
 
+    def test_events_of_joints_have_a_mark_a_kind(self):
+        number = self.figure("pendulum", "Events of the joints")
+        self.assertEqual(self.legend(number), ["Stop holds", "Stop lets go", "Sticks", "Slips"])
+        ticks = self.browser.script(f"return [...document.querySelectorAll('#figure-{number} .ytick')].map((tick) => tick.textContent).filter((text) => text)")
+        self.assertEqual(ticks, ["hinge pin"])
+
+    def test_a_mechanism_is_drawn_with_its_body_its_pin_and_its_stop(self):
+        number = self.browser.script("""
+            const figure = [...document.querySelectorAll('figure')].find((candidate) =>
+              candidate.textContent.includes('The structure in motion (2 bodies and nodes, 1 joint)'));
+            figure.scrollIntoView({behavior: 'instant'});
+            return figure.id.replace('figure-', '')""")
+        figure = f"document.querySelector('#figure-{number}')"
+        self.browser.wait(f"return {figure}.querySelector('canvas').width > 300")
+
+        def count(color):
+            """Pixels of a colour."""
+            return self.browser.script(f"""
+                const canvas = {figure}.querySelector('canvas'), copy = document.createElement('canvas');
+                [copy.width, copy.height] = [canvas.width, canvas.height];
+                const pen = copy.getContext('2d', {{willReadFrequently: true}});
+                pen.drawImage(canvas, 0, 0);
+                const {{data}} = pen.getImageData(0, 0, canvas.width, canvas.height);
+                let count = 0;
+                for (let i = 0; i < data.length; i += 4) count += arguments[0].every((value, place) => data[i + place] === value);
+                return count""", color)
+
+        def put(frame):
+            self.browser.script(f"""
+                const scrub = {figure}.querySelector('input[aria-label=Moment]');
+                scrub.value = arguments[0];
+                scrub.dispatchEvent(new Event('input'))""", str(frame))
+
+        orange, tint = [213, 94, 0], [233, 239, 243]
+        self.assertGreater(count(tint), 1000, "the box has an area")
+        put(30)
+        open_stop = count(orange)
+        put(50)
+        self.assertGreater(count(orange), 2 * open_stop, "the stop is filled while it holds")
+        put(70)
+        self.assertLess(count(orange), 1.5 * open_stop)
+        options = self.browser.script(f"return [...{figure}.querySelectorAll('select[aria-label=Speed] option')].map((one) => one.text)")
+        self.assertEqual(options[0], "0.1 \u00d7 real time", "a second in about eight")
+        self.assertIn("real time", options)
+        ink = count([28, 36, 44])
+        self.browser.script(f"""
+            const list = {figure}.querySelector('select[aria-label=Names]');
+            list.selectedIndex = 2;
+            list.dispatchEvent(new Event('change'))""")
+        self.assertGreater(count([28, 36, 44]), ink, "the name of the joint")
+
     def test_a_failure_is_told_first_with_its_message(self):
         self.assertIn("did not converge", self.browser.script("return document.querySelector('.alarm').textContent"))
 

@@ -278,6 +278,7 @@ void write_sample_results(const std::filesystem::path& file) {
   add_modes(sink);
   add_scene(sink);
   add_mechanism_modes(sink);
+  add_mechanism(sink);
 
   const std::string hostile = "bl\"ade</script><b>\xCE\xA9";
   results::TableLayout unknown{"unknown", "", "angular_frequency", {column("angular_frequency", "rad/s")}, {}};

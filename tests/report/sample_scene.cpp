@@ -5,6 +5,11 @@
 #include <numbers>
 
 namespace rubato::test {
+namespace {
+
+const std::string repeated_rows = "\"hinge pin x\" repeats what other joints say";
+
+}  // namespace
 
 void add_scene(results::Sink& sink) {
   const std::string name = "shaken";
@@ -88,7 +93,96 @@ void add_mechanism_modes(results::Sink& sink) {
               {"kind", "1", "", "", {}, {"beam", "body", "link"}}},
              {}},
             {{1, 0, 1, 1}});
-  sink.conclude(name, "failed", "the configuration is not stable", {});
+  sink.conclude(name, "failed", "the configuration is not stable", {{"warning1", repeated_rows}});
+}
+
+void add_mechanism(results::Sink& sink) {
+  const std::string name = "pendulum";
+  const auto number = [](const char* column) { return results::Block{column, "1", "", "", {}}; };
+  results::TableLayout motion{name, "", "time", {{"time", "s", "time", "", {}}}, {{"type", "transient"}}};
+  motion.blocks.push_back({"position", "m", "", "coordinate", {"arm.x", "arm.y", "arm:1.x"}});
+  motion.blocks.push_back({"velocity", "m/s", "", "coordinate", {"arm.x", "arm.y", "arm:1.x"}});
+  motion.blocks.push_back({"angle", "rad", "", "rotation", {"arm.rz", "hinge pin"}});
+  motion.blocks.push_back({"angular_velocity", "rad/s", "", "rotation", {"arm.rz", "hinge pin"}});
+  motion.blocks.push_back({"reaction_x", "N", "", "reaction_x_joint", {"hinge pin"}});
+  motion.blocks.push_back({"reaction_y", "N", "", "reaction_y_joint", {"hinge pin"}});
+  motion.blocks.push_back({"law_moment", "N m", "", "law_moment_joint", {"hinge pin"}});
+  std::vector<std::vector<double>> rows;
+  const double pi = std::numbers::pi, largest = 0.5 * pi;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = 0.01 * i, angle = -largest * std::sin(pi * t), rate = -largest * pi * std::cos(pi * t);
+    const double c = 0.5 * std::cos(angle), s = 0.5 * std::sin(angle), pull = rate * rate;  // of 1 kg
+    rows.push_back({t, c, s, 0.0, -s * rate, c * rate, 0.0, angle, angle, rate, rate, -c * pull, -s * pull, 3.0 * t});
+  }
+  add_table(sink, motion, rows);
+  const std::vector<std::string> nodes{"arm", "arm:1", "arm:3", "ground:4"};
+  add_table(sink,
+            {name,
+             "nodes",
+             "node",
+             {{"node", "1", "", "", {}, nodes},
+              {"x", "m", "", "", {}},
+              {"y", "m", "", "", {}},
+              {"z", "m", "", "", {}},
+              {"support", "1", "", "", {}, {"free", "held", "pinned", "clamped"}},
+              number("carrier"),
+              number("offset_x"),
+              number("offset_y"),
+              number("offset_z")},
+             {{"type", "nodes"}, {"motion", "position"}, {"degrees_of_freedom", "4"}}},
+            {{0, 0.5, 0, 0, 0, 0, 0, 0, 0},
+             {1, 0, 0, 0, 0, 1, 0, 0, 0},
+             {2, 0, 0, 0, 0, 0, -0.5, 0, 0},
+             {3, 0, 0, 0, 2, -1, 0, 0, 0}});
+  add_table(sink,
+            {name,
+             "lines",
+             "line",
+             {number("line"),
+              {"first", "1", "", "", {}, nodes},
+              {"second", "1", "", "", {}, nodes},
+              {"kind", "1", "", "", {}, {"beam", "body", "link", "strut"}}},
+             {}},
+            {{1, 0, 2, 1}});
+  add_table(sink,
+            {name,
+             "joints",
+             "joint",
+             {{"joint", "1", "", "", {}, {"hinge pin"}},
+              {"type", "1", "", "", {}, {"rigid", "revolute"}},
+              {"first", "1", "", "", {}, nodes},
+              {"second", "1", "", "", {}, nodes},
+              number("axis_x"),
+              number("axis_y"),
+              number("axis_z"),
+              {"law", "1", "", "", {}, {"none", "drive"}},
+              {"limit", "1", "", "", {}, {"none", "stop", "latch"}}},
+             {}},
+            {{0, 1, 3, 2, 0, 0, 0, 0, 1}});
+  add_table(sink,
+            {name,
+             "shapes",
+             "shape",
+             {number("shape"),
+              {"body", "1", "", "", {}, nodes},
+              {"kind", "1", "", "", {}, {"box", "cylinder", "sphere"}},
+              number("size_x"),
+              number("size_y"),
+              number("size_z")},
+             {}},
+            {{1, 0, 0, 1.0, 0.2, 0.1}});
+  add_table(sink,
+            {name,
+             "events",
+             "time",
+             {{"time", "s", "", "", {}},
+              {"joint", "1", "", "", {}, {"hinge pin"}},
+              {"event", "1", "", "", {}, {"lets_go", "locks", "slips", "sticks"}},
+              {"energy_lost", "J", "", "", {}}},
+             {{"type", "events"}}},
+            {{0.1, 0, 3, 0}, {0.2, 0, 2, 0}, {0.4, 0, 1, 0.5}, {0.6, 0, 0, 0}});
+  sink.conclude(name, "done", "",
+                {{"steps", "100"}, {"finding1", "\"hinge pin\" locks at t = 0.4 s"}, {"warning1", repeated_rows}});
 }
 
 }  // namespace rubato::test

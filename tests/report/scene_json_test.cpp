@@ -55,6 +55,13 @@ TEST(SceneJson, HoldsShapesAboutAConfigurationWithTheAxesOfItsNodes) {
   EXPECT_THAT(scene, HasSubstr(R"("values":[[0,2,2],[0,1,0]],"imaginary":[[0,0,0],[1,0,0]])"));
 }
 
+TEST(SceneJson, HoldsTheJointsAndTheShapesOfAMechanism) {
+  const std::string scene = scene_of(test::add_mechanism);
+  EXPECT_THAT(scene, HasSubstr(R"("joints":{"names":["hinge_pin"],"types":["revolute"],"first":[3],"second":[2],)"
+                               R"("axis":[[0],[0],[0]],"laws":["none"],"limits":["stop"]})"));
+  EXPECT_THAT(scene, HasSubstr(R"("shapes":{"nodes":[0],"kinds":["box"],"size":[[1],[0.2],[0.1]]})"));
+}
+
 TEST(SceneJson, DrawsNothingWhereADegreeOfFreedomWasNotKept) {
   const auto without_rotations = [](results::Sink& sink) {
     test::add_table(sink,

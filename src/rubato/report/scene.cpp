@@ -49,6 +49,29 @@ std::vector<std::string> words(const TableSource& table, const std::string& name
   return all;
 }
 
+std::vector<double> numbers(const TableSource& table, const std::string& name) {
+  const auto variable = find_variable(table, name);
+  return variable ? column(table, *variable) : std::vector<double>{};
+}
+
+SceneJoints joints_of(const TableSource* table) {
+  if (!table) return {};
+  return {words(*table, "joint"),
+          words(*table, "type"),
+          words(*table, "law"),
+          words(*table, "limit"),
+          numbers(*table, "first"),
+          numbers(*table, "second"),
+          {numbers(*table, "axis_x"), numbers(*table, "axis_y"), numbers(*table, "axis_z")}};
+}
+
+SceneShapes shapes_of(const TableSource* table) {
+  if (!table) return {};
+  return {numbers(*table, "body"),
+          words(*table, "kind"),
+          {numbers(*table, "size_x"), numbers(*table, "size_y"), numbers(*table, "size_z")}};
+}
+
 /// The columns of the main table that move nodes.
 class Motion {
  public:
@@ -163,11 +186,13 @@ std::optional<Scene> read_scene(const AnalysisTables& analysis, const SceneExten
         std::pair{"offset_y", &scene.offset_y}, std::pair{"offset_z", &scene.offset_z},
         std::pair{"rotation_x", &scene.rotation[0]}, std::pair{"rotation_y", &scene.rotation[1]},
         std::pair{"rotation_z", &scene.rotation[2]}})
-    if (const auto found = find_variable(*nodes, variable)) *values = column(*nodes, *found);
+    *values = numbers(*nodes, variable);
   scene.support = words(*nodes, "support");
   scene.kinds = words(*lines, "kind");
   scene.first = column(*lines, *first);
   scene.second = column(*lines, *second);
+  scene.joints = joints_of(find_table(analysis, "joints"));
+  scene.shapes = shapes_of(find_table(analysis, "shapes"));
   scene.is_absolute = attribute(*nodes, "motion") == "position";
   scene.place_node = motion.nodes();
   scene.place_axis = motion.axes();

@@ -9,6 +9,20 @@
 
 namespace rubato::report {
 
+/// The joints of a mechanism, for their symbols. Words and values as of the table `joints`.
+struct SceneJoints {
+  std::vector<std::string> names, types, laws, limits;
+  std::vector<double> first, second;        ///< nodes of the scene
+  std::array<std::vector<double>, 3> axis;  ///< in the axes of the node that carries the first [-]; 0 without one
+};
+
+/// Bodies of simple shapes.
+struct SceneShapes {
+  std::vector<double> node;  ///< in whose axes each lies
+  std::vector<std::string> kinds;
+  std::array<std::vector<double>, 3> size;  ///< along its axes [m]
+};
+
 /// A structure and how it moves.
 struct Scene {
   std::vector<std::string> names;               ///< of the nodes, [p]
@@ -22,6 +36,8 @@ struct Scene {
   /// rotations of nodes are then about these axes. Empty where they are those of the world.
   std::array<std::vector<double>, 3> rotation;
   std::vector<std::string> kinds;  ///< of the lines, or empty
+  SceneJoints joints;              ///< of a mechanism, or empty
+  SceneShapes shapes;              ///< likewise
   bool is_absolute = false;        ///< the values are positions instead of displacements
 
   /// The degrees of freedom that the results hold: axes 0 to 2 are along x, y, z, 3 to 5 rotations about them. [d]
@@ -38,7 +54,8 @@ struct SceneExtent {
   std::size_t numbers = 250'000;  ///< at most, over all frames
 };
 
-/// The scene of an analysis, from its tables `nodes` and `lines` and its main table. Nothing for analyses without such
+/// The scene of an analysis, from its tables `nodes` and `lines`, where there are any `joints` and `shapes`, and its
+/// main table. Nothing for analyses without such
 /// tables, and where not every degree of freedom (attribute `degrees_of_freedom` of `nodes`) was kept.
 std::optional<Scene> read_scene(const AnalysisTables& analysis, const SceneExtent& extent = {});
 

@@ -41,7 +41,8 @@ function number_node(value, digits = 5) {
   if (size >= 1e-3 && size < 1e6) {
     // Round numbers are shown as they are written in a study.
     const short = String(value);
-    return document.createTextNode(minus(short.length <= digits ? short : value.toPrecision(digits)));
+    const rounded = value.toPrecision(digits);
+    return document.createTextNode(minus(short.length <= digits ? short : rounded.includes("e") ? String(Number(rounded)) : rounded));
   }
   const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
   return element("span", {class: "number"}, `${minus(mantissa)} × 10`, element("sup", {}, minus(exponent.replace("+", ""))));
@@ -99,4 +100,24 @@ function add_section(chapter, title, ...body) {
   const heading = element("h3", {id}, element("span", {class: "ordinal"}, `${chapter.number}.${chapter.sections}`), title);
   chapter.node.append(heading, ...body.flat());
   chapter.entries.append(element("li", {}, element("a", {href: `#${id}`}, title)));
+}
+
+/**
+ * netCDF keeps words without blanks: names of joints and nodes in a scene and in a table of events become again those of the
+ * labels of the main table.
+ */
+function restore_blanks(analysis) {
+  const names = new Map();
+  for (const label of (analysis.tables[0]?.variables ?? []).flatMap((variable) => variable.labels)) {
+    for (const name of [label, label.replace(/\.[^.]*$/, "")]) if (name.includes(" ")) names.set(name.replaceAll(" ", "_"), name);
+  }
+  const restored = (words) => words.map((word) => names.get(word) ?? word);
+  const {scene} = analysis;
+  if (scene) {
+    scene.names = restored(scene.names);
+    scene.joints.names = restored(scene.joints.names);
+  }
+  for (const table of analysis.tables.filter((candidate) => candidate.attributes.type === "events")) {
+    for (const variable of table.variables) if (variable.name === "joint") variable.categories = restored(variable.categories);
+  }
 }

@@ -57,8 +57,9 @@ function write_analysis(parent, analysis, index) {
   if (is_transient(analysis)) {
     write_transient(chapter, analysis);
     const others = analysis.tables.filter((table) => table.name !== "" && table.name !== "energy");
-    others.filter(is_of_steps).forEach((table) => write_steps(chapter, table));
-    write_tables(chapter, others.filter((table) => !is_of_steps(table)));
+    others.filter(is_of_events).forEach((table) => write_events(chapter, analysis, table));
+    others.filter(is_of_steps).forEach((table) => write_steps(chapter, table, events_of(analysis)));
+    write_tables(chapter, others.filter((table) => !is_of_steps(table) && !is_of_events(table)));
   } else if (is_frequency_response(analysis)) {
     write_frequency_response(chapter, analysis);
   } else if (is_damper_curve(analysis)) {
@@ -82,6 +83,7 @@ function write_page() {
   const header = element("header", {}, element("p", {class: "overline"}, `Rubato${version} · report of a study`),
                          element("h1", {}, title));
   const navigation = element("nav", {class: "contents", "aria-label": "Contents"}, element("h2", {}, "Contents"), contents);
+  data.analyses.forEach(restore_blanks);
   write_summary(main);
   data.analyses.forEach((analysis, index) => write_analysis(main, analysis, index));
   document.getElementById("page").append(header, navigation, main);

@@ -1,6 +1,4 @@
-// A structure at a moment: where its nodes and lines are, and how they look on a canvas.
-
-const scene_colors = {reference: "#b4bcc4", line: "#0b4f7c", node: "#1c242c", support: "#6c7680", trace: "#d55e00"};
+// A structure at a moment: where its nodes and lines are, and where a view shows them.
 
 /** A vector turned by a rotation vector, about its direction by its length. */
 function turned_by(turn, vector) {
@@ -40,6 +38,19 @@ function node_motion(scene, values) {
     moved.forEach((x, i) => { motion[6 * node + i] = motion[6 * carrier + i] + x; });
   });
   return motion;
+}
+
+/** The node that carries a point; -1: the ground. */
+const carrier_of = (scene, node) => scene.carrier[node] ?? node;
+
+/** A direction in the axes of a node or of what carries it, by the axes of the world. */
+function carried_direction(scene, motion, scale, node, direction) {
+  const carrier = carrier_of(scene, node);
+  if (carrier < 0) return direction;
+  const turn = [3, 4, 5].map((i) => motion[6 * carrier + i]);
+  if (scene.is_absolute) return turned_by(turn, direction);
+  const rest = turned_by(scene.rotation.map((axis) => axis[carrier] ?? 0), direction), more = crossed(turn, rest);
+  return rest.map((x, i) => x + scale * more[i]);
 }
 
 /** Where a node is: its reference position and `scale` times its displacement. */
@@ -111,76 +122,10 @@ function make_view(scene, box) {
     const [x, y] = turned(point);
     return [view.origin[0] + view.pixels * x, view.origin[1] - view.pixels * y];
   };
+  /** A direction of the world on the canvas, in pixels: of length 1 where it lies in the plane of the picture. */
+  view.direct = (direction) => {
+    const [x, y] = turned(direction.map((x, i) => x + centre[i]));
+    return [x, -y];
+  };
   return view;
-}
-
-function draw_polyline(pen, points) {
-  pen.beginPath();
-  points.forEach(([x, y], i) => (i === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
-  pen.stroke();
-}
-
-/** A mark under a supported node: a triangle, upon a line where it is clamped. */
-function draw_support(pen, [x, y], kind) {
-  const size = 9;
-  pen.beginPath();
-  pen.moveTo(x, y);
-  pen.lineTo(x - 0.7 * size, y + size);
-  pen.lineTo(x + 0.7 * size, y + size);
-  pen.closePath();
-  if (kind === "held") pen.stroke(); else pen.fill();
-  if (kind === "clamped") draw_polyline(pen, [[x - size, y + size + 2], [x + size, y + size + 2]]);
-}
-
-/** A length that a person would choose for a scale bar of about so many pixels. */
-function round_length(length) {
-  const power = 10 ** Math.floor(Math.log10(length));
-  return [5, 2, 1].map((digit) => digit * power).find((candidate) => candidate <= length) ?? power;
-}
-
-function draw_scale_bar(pen, view, height) {
-  const length = round_length(110 / view.pixels), pixels = length * view.pixels;
-  pen.strokeStyle = pen.fillStyle = scene_colors.node;
-  pen.lineWidth = 1;
-  draw_polyline(pen, [[14, height - 18], [14, height - 13], [14 + pixels, height - 13], [14 + pixels, height - 18]]);
-  pen.fillText(`${Number(length.toPrecision(2))} m`, 14 + pixels + 6, height - 11);
-}
-
-/** Draws the structure: where it was, thin and grey, where it is, supports, and the way that some nodes have gone. */
-function draw_scene(pen, scene, view, {motion, scale, traces, width, height}) {
-  pen.clearRect(0, 0, width, height);
-  pen.fillStyle = "#ffffff";
-  pen.fillRect(0, 0, width, height);
-  pen.lineJoin = "round";
-  pen.font = "12px sans-serif";
-  const lines = scene.lines[0].map((_, line) => line);
-  if (!scene.is_absolute) {
-    pen.strokeStyle = scene_colors.reference;
-    pen.lineWidth = 1;
-    const rest = new Float64Array(motion.length);
-    for (const line of lines) draw_polyline(pen, line_points(scene, rest, 0, line).map(view.project));
-  }
-  pen.strokeStyle = scene_colors.trace;
-  pen.lineWidth = 1.2;
-  for (const trace of traces) draw_polyline(pen, trace.map(view.project));
-  pen.strokeStyle = scene_colors.line;
-  for (const line of lines) {
-    pen.lineWidth = scene.kinds?.[line] === "body" ? 4.5 : 2.2;
-    draw_polyline(pen, line_points(scene, motion, scale, line).map(view.project));
-  }
-  pen.fillStyle = pen.strokeStyle = scene_colors.support;
-  pen.lineWidth = 1.2;
-  (scene.support ?? []).forEach((kind, node) => {
-    if (kind !== "free") draw_support(pen, view.project(node_position(scene, motion, scale, node)), kind);
-  });
-  if (scene.names.length <= 200) {
-    pen.fillStyle = scene_colors.node;
-    scene.names.forEach((_, node) => {
-      const [x, y] = view.project(node_position(scene, motion, scale, node));
-      pen.beginPath();
-      pen.arc(x, y, 2.4, 0, 2 * Math.PI);
-      pen.fill();
-    });
-  }
-  draw_scale_bar(pen, view, height);
 }

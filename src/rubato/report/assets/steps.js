@@ -28,12 +28,25 @@ const marks_of_tries = {
   event: {color: "#6c7680", size: 5, symbol: "circle-open"},
 };
 
+/** The times at which steps ended at an event, where nothing tells which: lines. */
+function located_lines(tries, words, low, high) {
+  const times = located_rows(tries, words).map((row) => tries.time[row] + tries.step[row]);
+  if (times.length === 0) return [];
+  return [{type: "scatter", mode: "lines", name: "Event", showlegend: true, hoverinfo: "x+name",
+           line: {color: palette[2], width: 1, dash: "dot"},
+           x: times.flatMap((time) => [time, time, null]), y: times.flatMap(() => [low, high, null])}];
+}
+
 /** Lengths or errors of all tries, told apart by what became of them; the times of events as lines. */
-function tries_traces(table, range, name, unit) {
+function tries_traces(table, range, name, unit, events) {
   const tries = tries_of(table, range);
   const y = tries[name].map((value) => (value > 0 ? value : null));
+  const heights = y.filter((value) => value !== null);
+  const [low, high] = heights.length ? bounds(heights) : [1, 1];
+  const [first, last] = [tries.time[0], tries.time.at(-1) + (tries.step.at(-1) ?? 0)];
+  const marks = event_traces(events.filter(({time}) => first <= time && time <= last), ({time}) => ({x: time, y: high}), low);
   if (!tells_tries(table, range)) {
-    return [{type: "scatter", mode: "lines", x: tries.time, y, name: phrase(name), line: line_style(0), showlegend: false}];
+    return [...marks, {type: "scatter", mode: "lines", x: tries.time, y, name: phrase(name), line: line_style(0), showlegend: false}];
   }
   const words = variable_of(table, "reason").categories;
   const traces = words.flatMap((word, index) => {
@@ -47,14 +60,7 @@ function tries_traces(table, range, name, unit) {
              line: {color: mark.color, width: 1.2}, showlegend: true,
              hovertemplate: `%{y:.4~g} ${unit} at %{x:.6~g} s<extra>${title}</extra>`}];
   });
-  const times = located_rows(tries, words).map((row) => tries.time[row] + tries.step[row]);
-  const heights = y.filter((value) => value !== null);
-  if (times.length && heights.length) {
-    const [low, high] = bounds(heights);
-    traces.unshift({type: "scatter", mode: "lines", name: "Event", showlegend: true, hoverinfo: "x+name",
-                    line: {color: palette[2], width: 1, dash: "dot"},
-                    x: times.flatMap((time) => [time, time, null]), y: times.flatMap(() => [low, high, null])});
-  }
+  if (heights.length) traces.unshift(...(events.length ? marks : located_lines(tries, words, low, high)));
   return traces;
 }
 
@@ -64,12 +70,12 @@ function decades_axis(values) {
   return {...logarithmic, dtick: Math.max(1, Math.ceil(Math.log10(high / low) / 8)) || 1};
 }
 
-function tries_figure(table, name, caption, more) {
+function tries_figure(table, name, caption, events, more) {
   const variable = variable_of(table, name), unit = variable.unit === "1" ? "" : pretty_unit(variable.unit);
   return make_figure({
     caption: `${caption} ${overview_text(table)}`, choosers: table.window ? [whole_or_window] : [],
     draw: ([range = 0]) => {
-      const traces = tries_traces(table, range, name, unit);
+      const traces = tries_traces(table, range, name, unit, events);
       const {time} = tries_of(table, range);
       return {traces: [...traces, ...more(time)],
               layout: {xaxis: axis(axis_label(table.variables[0])), yaxis: axis(axis_label(variable), decades_axis(tries_of(table, range)[name]))}};
@@ -100,12 +106,13 @@ function step_distribution_figure(table) {
   });
 }
 
-function write_steps(chapter, table) {
+/** events: as events_of tells, or none. */
+function write_steps(chapter, table, events) {
   const has_error = tries_of(table, 0).error.some((error) => error > 0);
-  const body = [tries_figure(table, "step", "Length of the steps over the time at which they start, and what became of each try.", () => [])];
+  const body = [tries_figure(table, "step", "Length of the steps over the time at which they start, and what became of each try.", events, () => [])];
   if (has_error) {
     body.push(tries_figure(table, "error", "Error of the steps, as it was estimated; a larger one than the tolerance is tried again with a shorter step, and one of zero leaves a gap.",
-                           (time) => tolerance_line(table, time)));
+                           events, (time) => tolerance_line(table, time)));
   }
   if (table.distribution) body.push(step_distribution_figure(table));
   add_section(chapter, "Steps", body);
