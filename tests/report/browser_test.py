@@ -399,6 +399,26 @@ class Report(unittest.TestCase):
         self.assertGreater(second[3] - first[3], 20)
         self.assertGreater(first[0] - second[0], 20)
 
+    def test_names_of_joints_stand_in_the_key_numbers_with_what_they_bear(self):
+        def rows(words):
+            return self.browser.script("""
+                const table = [...document.querySelectorAll('.table')].find((candidate) => candidate.textContent.includes(arguments[0]));
+                return [...table.querySelectorAll('tbody tr')].map((row) => [...row.children].map((cell) => cell.textContent))""", words)
+
+        # 1 kg at 0.5 m that turns with pi^2/2 rad/s at the start: 0.5 (pi^2/2)^2 N.
+        self.assertEqual(rows("Largest reactions of the joints"), [["hinge pin", "12.18", "0"]])
+        # It rises by 3 N m in a second: root mean square sqrt(3).
+        self.assertEqual(rows("Drives, laws and friction"), [["hinge pin", "Law moment [N m]", "3", "1", "1.732", "3"]])
+        # Half a turn around the right, at half of the time.
+        self.assertEqual(rows("Angles of the joints")[0][2:4], ["1.571", "0.5"])
+
+    def test_nodes_inside_beams_are_listed_where_asked_for(self):
+        number = self.figure("pendulum", "Motion of the coordinates")
+        self.assertEqual(self.legend(number), ["arm.x", "arm.y"])
+        self.choose(number, "All nodes")
+        self.browser.wait(f"return document.querySelectorAll('#figure-{number} .legendtext').length === 3")
+        self.assertEqual(self.legend(number), ["arm.x", "arm.y", "arm:1.x"])
+
     def test_events_of_joints_have_a_mark_a_kind(self):
         number = self.figure("pendulum", "Events of the joints")
         self.assertEqual(self.legend(number), ["Stop holds", "Stop lets go", "Sticks", "Slips"])

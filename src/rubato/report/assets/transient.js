@@ -1,4 +1,4 @@
-// A transient: time histories, phase portrait, hysteresis loops, energy ledger, key numbers.
+// A transient: time histories, phase portrait, hysteresis loops, energy ledger.
 
 /** What the figures of the last rows show, in words. */
 function window_text(table) {
@@ -21,40 +21,58 @@ function columns_of(table, range) {
   return range === 1 && table.window ? table.window : table.overview;
 }
 
-function lines_over_rows(table, variable, range) {
+/** Places of the labels that a figure shows: those of nodes within beams ("BEAM:1.x") only where asked for. */
+function shown_places(variable, with_inner) {
+  const places = variable.labels.map((_, place) => place);
+  const others = places.filter((place) => !is_inner_label(variable.labels[place]));
+  return with_inner || others.length === 0 ? places : others;
+}
+
+const is_inner_label = (label) => /:\d+\.(x|y|z|rx|ry|rz)$/.test(label);
+const has_inner_labels = (variable) => shown_places(variable, false).length < variable.labels.length;
+
+function lines_over_rows(table, variable, range, places) {
   const columns = columns_of(table, range);
   return columns[variable.index].map((y, label) => ({
-    type: "scatter", mode: "lines", x: columns[0][0], y, line: line_style(label), showlegend: true,
+    type: "scatter", mode: "lines", x: columns[0][0], y, line: line_style(places.indexOf(label)), showlegend: true,
     name: plot_text(variable.dimension ? variable.labels[label] : phrase(variable.name)),
-  }));
+  })).filter((_, label) => places.includes(label));
 }
 
 /** A figure of some variables over the rows, one at a time. */
 function history_figure(table, variables, subject) {
   const choosers = [{label: "Quantity", options: variables.map((variable) => phrase(variable.name))}];
   if (table.window) choosers.push(whole_or_window);
+  const has_inner = variables.some(has_inner_labels);
+  if (has_inner) choosers.push({label: "Nodes", options: ["Without nodes inside beams", "All nodes"]});
   return make_figure({
     caption: `${subject} over ${table.variables[0].name}. ${overview_text(table)}${shortened(variables[0])}`,
     choosers, height: 400,
-    draw: ([quantity, range = 0]) => ({
-      traces: lines_over_rows(table, variables[quantity], range),
-      layout: {xaxis: axis(axis_label(table.variables[0])), yaxis: axis(axis_label(variables[quantity])),
-               hovermode: variables[quantity].labels.length > 8 ? "closest" : "x unified"},
-    }),
+    draw: (chosen) => {
+      const variable = variables[chosen[0]], range = table.window ? chosen[1] : 0;
+      const places = shown_places(variable, has_inner && chosen[choosers.length - 1] === 1);
+      return {
+        traces: lines_over_rows(table, variable, range, places),
+        layout: {xaxis: axis(axis_label(table.variables[0])), yaxis: axis(axis_label(variable)),
+                 hovermode: places.length > 8 ? "closest" : "x unified"},
+      };
+    },
   });
 }
 
 function phase_portrait(table, position, velocity) {
-  const columns = columns_of(table, 1);
+  const columns = columns_of(table, 1), places = shown_places(position, false);
+  const [across, up] = [position, velocity].map((variable) => places.map((label) => columns[variable.index][label]));
+  const rest = has_inner_labels(position) ? " Nodes inside beams are left out." : "";
   return make_figure({
-    caption: `Phase portrait: velocity against position. ${window_text(table)}${shortened(position)}`, height: 440,
+    caption: `Phase portrait: velocity against position. ${window_text(table)}${shortened(position)}${rest}`, height: 440,
     draw: () => ({
-      traces: columns[position.index].map((x, label) => ({
-        type: "scatter", mode: "lines", x, y: columns[velocity.index][label], name: plot_text(position.labels[label]),
-        line: {...line_style(label), width: 1.3}, showlegend: true,
+      traces: places.map((label, line) => ({
+        type: "scatter", mode: "lines", x: across[line], y: up[line], name: plot_text(position.labels[label]),
+        line: {...line_style(line), width: 1.3}, showlegend: true,
       })),
-      layout: {xaxis: axis(axis_label(position), {range: padded_range(columns[position.index])}),
-               yaxis: axis(axis_label(velocity), {range: padded_range(columns[velocity.index])})},
+      layout: {xaxis: axis(axis_label(position), {range: padded_range(across)}),
+               yaxis: axis(axis_label(velocity), {range: padded_range(up)})},
     }),
   });
 }
@@ -147,20 +165,6 @@ function energy_ledger(table) {
   });
 }
 
-/** Key numbers: a row a label, three columns a quantity. */
-function key_numbers(table, variables, caption) {
-  const columns = [{title: phrase(variables[0].dimension), is_text: true}];
-  const groups = [{title: "", span: 1}];
-  for (const variable of variables) {
-    groups.push({title: axis_label(variable), span: 3});
-    columns.push({title: "max"}, {title: "rms"}, {title: "late"});
-  }
-  const rows = variables[0].labels.map((label, row) => [
-    label, ...variables.flatMap((variable) => table.key_numbers[variable.index][row].map((value) => number_node(value, 4))),
-  ]);
-  return make_table({caption: caption + shortened(variables[0]), columns, groups, rows});
-}
-
 function is_transient(analysis) {
   const table = analysis.tables[0];
   return table && table.name === "" && table.row_dimension === "time" &&
@@ -187,6 +191,10 @@ function write_transient(chapter, analysis) {
   if (table.rows === 0) {
     chapter.node.append(element("p", {class: "note"}, "It ended before its first row."));
     return;
+  }
+  const is_mechanism = joints.length > 0;
+  if (is_mechanism) {
+    write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, joints: {rotations, sliding, efforts}});
   }
   if (motion.length) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
@@ -218,14 +226,5 @@ function write_transient(chapter, analysis) {
     add_section(chapter, "Moments over rotations", hysteresis_loops(table, hinges[0]));
   }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (table.key_numbers && motion.length + rotations.length + sliders.length + hinges.length) {
-    const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
-      "last tenth of the duration. All rows count.";
-    const numbers = [];
-    if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
-    if (rotations.length) numbers.push(key_numbers(table, rotations, `Rotations of the nodes.${meaning}`));
-    if (sliders.length) numbers.push(key_numbers(table, sliders, `Motion and force of the sliders.${meaning}`));
-    if (hinges.length) numbers.push(key_numbers(table, hinges, `Moment and slip of the sliders between rotations.${meaning}`));
-    add_section(chapter, "Key numbers", numbers);
-  }
+  if (!is_mechanism) write_key_numbers(chapter, table, {motion, rotations, sliders, hinges});
 }
