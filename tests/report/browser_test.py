@@ -425,6 +425,14 @@ class Report(unittest.TestCase):
         ticks = self.browser.script(f"return [...document.querySelectorAll('#figure-{number} .ytick')].map((tick) => tick.textContent).filter((text) => text)")
         self.assertEqual(ticks, ["hinge pin"])
 
+    def test_a_warning_is_told_once_with_the_analyses_that_it_is_of(self):
+        warnings = self.browser.script("return [...document.querySelectorAll('.warning')].map((node) => node.textContent)")
+        self.assertEqual(warnings, ["Warning, swinging, pendulum: \"hinge pin x\" repeats what other joints say"])
+        findings = self.browser.script("return document.querySelector('#table-1').textContent")
+        self.assertIn("\"hinge pin\" locks at t = 0.4 s", findings)
+        self.assertNotIn("steps:", findings)
+        self.assertIn("Steps100", self.browser.script("return document.querySelector('main').textContent"))
+
     def test_a_mechanism_is_drawn_with_its_body_its_pin_and_its_stop(self):
         number = self.browser.script("""
             const figure = [...document.querySelectorAll('figure')].find((candidate) =>
