@@ -147,7 +147,8 @@ def find(browser, words):
     numbers = browser.script(FIND, words)
     for number in numbers:
         browser.script(DRAW, number)
-        browser.wait(f"return document.querySelector('#figure-{number} .main-svg, #figure-{number} canvas') !== null")
+        browser.wait(f"return document.querySelector('#figure-{number} .main-svg') !== null || "
+                     f"document.querySelector('#figure-{number} canvas')?.width > 300")  # that of one which is not drawn
     return numbers
 
 

@@ -409,8 +409,8 @@ class Report(unittest.TestCase):
         self.assertEqual(rows("Largest reactions of the joints"), [["hinge pin", "12.18", "0"]])
         # It rises by 3 N m in a second: root mean square sqrt(3).
         self.assertEqual(rows("Drives, laws and friction"), [["hinge pin", "Law moment [N m]", "3", "1", "1.732", "3"]])
-        # Half a turn around the right, at half of the time.
-        self.assertEqual(rows("Angles of the joints")[0][2:4], ["1.571", "0.5"])
+        # A quarter of a turn from the right, in the row next to half of the time.
+        self.assertEqual(rows("Angles of the joints")[0][2:4], ["1.571", "0.5041"])
 
     def test_nodes_inside_beams_are_listed_where_asked_for(self):
         number = self.figure("pendulum", "Motion of the coordinates")
@@ -462,15 +462,23 @@ class Report(unittest.TestCase):
 
         orange, tint = [213, 94, 0], [233, 239, 243]
         self.assertGreater(count(tint), 1000, "the box has an area")
-        put(30)
+        put(55)
         open_stop = count(orange)
-        put(50)
+        put(70)  # after 0.49 s
         self.assertGreater(count(orange), 2 * open_stop, "the stop is filled while it holds")
-        put(70)
+        put(85)
         self.assertLess(count(orange), 1.5 * open_stop)
         options = self.browser.script(f"return [...{figure}.querySelectorAll('select[aria-label=Speed] option')].map((one) => one.text)")
         self.assertEqual(options[0], "0.1 \u00d7 real time", "a second in about eight")
         self.assertIn("real time", options)
+        # Frames crowd at the start: playback goes by their times.
+        put(0)
+        self.browser.script(f"window.began = performance.now(); {figure}.querySelector('.play').click()")
+        time.sleep(1.0)
+        passed, told = self.browser.script(f"""
+            {figure}.querySelector('.play').click();
+            return [performance.now() - window.began, {figure}.querySelector('.moment').textContent]""")
+        self.assertAlmostEqual(float(told.removeprefix("t = ").removesuffix(" s")), 1e-4 * passed, delta=0.03)
         ink = count([28, 36, 44])
         self.browser.script(f"""
             const list = {figure}.querySelector('select[aria-label=Names]');

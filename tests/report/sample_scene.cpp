@@ -110,7 +110,7 @@ void add_mechanism(results::Sink& sink) {
   std::vector<std::vector<double>> rows;
   const double pi = std::numbers::pi, largest = 0.5 * pi;
   for (int i = 0; i <= 100; ++i) {
-    const double t = 0.01 * i, angle = -largest * std::sin(pi * t), rate = -largest * pi * std::cos(pi * t);
+    const double t = 1e-4 * i * i, angle = -largest * std::sin(pi * t), rate = -largest * pi * std::cos(pi * t);
     const double c = 0.5 * std::cos(angle), s = 0.5 * std::sin(angle), pull = rate * rate;  // of 1 kg
     rows.push_back({t, c, s, 0.0, -s * rate, c * rate, 0.0, angle, angle, rate, rate, -c * pull, -s * pull, 3.0 * t});
   }

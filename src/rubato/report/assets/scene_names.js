@@ -7,11 +7,12 @@ function own_nodes(scene) {
   return scene.names.map((_, node) => node).filter((node) => carrier_of(scene, node) === node);
 }
 
-/** What can be named: {text, node, kind}, the joints first. */
+/** What can be named: {text, more, nodes, kind}, in the middle of its nodes; the joints first. Struts and links have two ends. */
 function named_places(scene) {
-  const {names, types, second} = scene.joints;
-  return [...names.map((name, joint) => ({text: name, more: ` (${types[joint]})`, node: second[joint], kind: "joint"})),
-          ...own_nodes(scene).map((node) => ({text: scene.names[node], more: "", node, kind: is_inner_node(scene.names[node]) ? "inner" : "part"}))];
+  const {names, types, first, second} = scene.joints;
+  const ends = (joint) => (["strut", "distance"].includes(types[joint]) ? [first[joint], second[joint]] : [second[joint]]);
+  return [...names.map((name, joint) => ({text: name, more: ` (${types[joint]})`, nodes: ends(joint), kind: "joint"})),
+          ...own_nodes(scene).map((node) => ({text: scene.names[node], more: "", nodes: [node], kind: is_inner_node(scene.names[node]) ? "inner" : "part"}))];
 }
 
 /** What the list of nodes to trace offers: {text, node}. */
@@ -52,7 +53,10 @@ function grouped_places(places) {
  * choice: of name_choices; pointer: [x, y] on the canvas, or null
  */
 function draw_names(pen, scene, view, {motion, scale, places, choice, pointer, width}) {
-  const at = ({node}) => view.project(node_position(scene, motion, scale, node));
+  const at = ({nodes}) => {
+    const ends = nodes.map((node) => view.project(node_position(scene, motion, scale, node)));
+    return between(ends[0], ends.at(-1), 0.5);
+  };
   const write = ({text, at: [x, y], kind}) => {
     const wide = pen.measureText(text).width, left = Math.max(4, Math.min(x + 9, width - wide - 4));
     pen.fillStyle = "rgba(255, 255, 255, 0.8)";
