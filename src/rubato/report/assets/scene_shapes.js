@@ -1,6 +1,6 @@
 // Bodies of simple shapes: their outlines, in the plane and in space.
 
-const circle_pieces = 32;
+const circle_pieces = 64;
 
 /** A circle about the origin in the plane of two axes: points. */
 function circle_points(radius, [first, second], height = 0) {
@@ -27,7 +27,7 @@ function outlines_of(kind, [a, b, c], in_space) {
   if (!in_space) return [circle_points(radius, [0, 1]), [[0, 0, 0], [radius, 0, 0]]];
   if (kind === "sphere") return [[0, 1], [1, 2], [2, 0]].map((axes) => circle_points(radius, axes));
   const [low, high] = [-0.5 * c, 0.5 * c].map((z) => circle_points(radius, [0, 1], z));
-  return [low, high, ...[0, 8, 16, 24].map((piece) => [low[piece], high[piece]])];
+  return [low, high, ...[0, 1, 2, 3].map((quarter) => quarter * circle_pieces / 4).map((piece) => [low[piece], high[piece]])];
 }
 
 function draw_shapes(pen, scene, view, motion, scale) {
