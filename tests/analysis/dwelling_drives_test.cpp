@@ -39,8 +39,9 @@ void expect_friction_along(const std::string& drive, double way) {
     for (const auto& row : table.rows) {
       const double force = row[table.column("friction_force", "guide")];
       standing += force == 0.0 ? 1 : 0;
-      if (row[0] > 1e-6)  // it may stick at the start, until the drive asks for more
+      if (row[0] > 1e-6) {  // it may stick at the start, until the drive asks for more
         EXPECT_TRUE(force == 0.0 || std::abs(std::abs(force) - limit) < 1e-12) << row[0];
+      }
     }
     EXPECT_GT(standing, 5u);
   }

@@ -35,8 +35,14 @@ TEST(StructureTables, NameTheEndsOfEveryElement) {
 
 TEST(StructureTables, CallASupportedNodeOfTrussesPinned) {
   model::ModelDescription description;
-  description.structure.nodes = {{"a", {0.0, 0.0}, {}}, {"b", {1.0, 0.0}, {}}};
-  description.structure.materials = {{"steel", 2e11, 0.3, {}, 7800.0, {}}};
+  const auto add_node = [&](const std::string& name, double x) {
+    model::NodeDescription& node = description.structure.nodes.emplace_back();
+    node.name = name;
+    node.position = {x, 0.0};
+  };
+  add_node("a", 0.0);
+  add_node("b", 1.0);
+  description.structure.materials = {{"steel", 2e11, 0.3, {}, 7800.0, {}, {}}};
   description.structure.sections = {{"bar", 1e-3, {}, {}, {}, {}}};
   model::TrussDescription bar;
   bar.nodes = {"a", "b"};

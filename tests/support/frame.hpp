@@ -29,7 +29,7 @@ inline model::ModelDescription portal_frame() {
     beam.material = "steel";
     frame.beams.push_back(beam);
   }
-  frame.materials = {{"steel", 206.01e9, 0.3, {}, 7800.0, {}}};
+  frame.materials = {{"steel", 206.01e9, 0.3, {}, 7800.0, {}, {}}};
   frame.sections = {{"tube", 3.2e-3, {1.707e-6}, {}, {5.0 / 6.0}, {}}};
   model::SupportDescription symmetry, foot;
   symmetry.node = "1";
