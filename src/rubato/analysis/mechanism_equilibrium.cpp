@@ -1,3 +1,4 @@
+#include <rubato/analysis/beam_section_forces.hpp>
 #include <rubato/analysis/joint_coordinates.hpp>
 #include <rubato/analysis/joint_laws.hpp>
 #include <rubato/analysis/joint_reactions.hpp>
@@ -78,6 +79,7 @@ std::vector<std::string> check_mechanism_static(const std::string& name, const L
   std::vector<std::string> warnings;
   (void)assembled_start(where, mechanism, warnings, false);
   (void)observed_or_all(description.observe, mechanism);
+  (void)BeamSectionForces(mechanism, description.section_forces, "analysis \"" + name + "\": ");
   return warnings;
 }
 
@@ -100,12 +102,14 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   JointCoordinates joints(mechanism);
   JointReactions reactions(mechanism);
   JointLaws laws(mechanism);
+  BeamSectionForces beams(mechanism, description.section_forces, "analysis \"" + name + "\": ");
   const ObservedBlocks observed(joints.with_angles(observed_or_all(description.observe, mechanism)));
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   observed.add(layout, {ObservedBlocks::Quantity::position});
   joints.add_displacements(layout);
   reactions.add(layout);
   laws.add(layout);
+  beams.add(layout);
   joints.go_to(found.state);
   Vector positions;
   joints.positions(positions);
@@ -114,6 +118,7 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   joints.append_displacements(row);
   reactions.append(joints.motion(), found.state.multiplier, row);
   laws.append(joints.motion(), row);
+  beams.append(joints.motion(), row);
   context.sink.open(layout)->append(row);
   if (found.load_steps > 0)
     report.findings.push_back(fmt::format(

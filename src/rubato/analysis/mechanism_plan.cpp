@@ -1,3 +1,4 @@
+#include <rubato/analysis/beam_section_forces.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_load_swings.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
@@ -145,6 +146,8 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   TransientPlan& transient = plan.transient;
   plan.allow_unstable = description.allow_unstable;
   plan.project_velocities = description.project_velocities;
+  plan.section_forces = description.section_forces;
+  (void)BeamSectionForces(mechanism, description.section_forces, title);
   transient.method = method_of(description.method, parameters);
   try {
     (void)integrate::make_mechanism_stepper(transient.method, mechanism, {}, plan.allow_unstable);

@@ -14,6 +14,7 @@ struct MechanismPlan {
   TransientPlan transient;  ///< `start` is consistent; `automatic` holds the plan of fixed steps too
   bool allow_unstable = false;
   bool project_velocities = false;
+  model::SectionForcesDescription section_forces;
   std::vector<std::string> warnings;  ///< what the start took: parts that moved, constraints that repeat others
   std::string failure;  ///< why the equilibrium to start from was not found: the analysis fails; empty: nothing did
 

@@ -23,6 +23,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
       reactions_(mechanism),
       frictions_(mechanism),
       laws_(mechanism),
+      beams_(mechanism, plan.section_forces, ""),
       equations_(mechanism) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time = scalar("time", "s", "time");
@@ -40,6 +41,7 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
   reactions_.add(layout);
   frictions_.add(layout);
   laws_.add(layout);
+  beams_.add(layout);
   rows_ = sink.open(layout);
   if (!plan.transient.energy) return;
   energy_rows_ =
@@ -72,6 +74,7 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
   equations_.go_to(balanced_, model::Side::right);
   frictions_.append(equations_, joints_.motion(), balanced_.multiplier, row_);
   laws_.append(joints_.motion(), row_);
+  beams_.append(joints_.motion(), row_);
   rows_->append(row_);
   ++count_;
   if (!energy_rows_ || !energy) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/beam_section_forces.hpp>
 #include <rubato/analysis/joint_coordinates.hpp>
 #include <rubato/analysis/joint_frictions.hpp>
 #include <rubato/analysis/joint_laws.hpp>
@@ -38,6 +39,7 @@ class MechanismRecorder {
   JointReactions reactions_;
   JointFrictions frictions_;
   JointLaws laws_;
+  BeamSectionForces beams_;
   system::MechanismEquations equations_;
   system::State balanced_;
   Vector positions_, velocities_, accelerations_;

@@ -52,6 +52,9 @@ std::vector<model::Held> held_of(const std::string& title, const model::StaticDe
 StaticEquilibrium equilibrium_of(const std::string& name, const Location& where,
                                  const model::StaticDescription& description, const system::LocallyNonlinear& system) {
   const std::string title = "analysis \"" + name + "\": ";
+  if (description.section_forces.is_wanted())
+    throw InvalidInput(description.section_forces.where,
+                       title + "section_forces are kept of geometrically exact beams, in mechanisms; leave it out");
   const std::vector<model::Held> held = held_of(title, description, system);
   StaticEquilibrium found = find_equilibrium(system, held);
   switch (found.outcome) {

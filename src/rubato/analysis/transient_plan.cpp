@@ -195,6 +195,9 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
   plan.method = method_of(description.method, parameters);
   plan.duration = positive(description.duration, parameters, title + "duration", where);
   plan.energy = description.energy;
+  if (description.section_forces.is_wanted())
+    throw InvalidInput(description.section_forces.where,
+                       title + "section_forces are kept of geometrically exact beams, in mechanisms; leave it out");
   if (description.project_velocities)
     throw InvalidInput(description.project_velocities_where,
                        title + "project_velocities is for mechanisms: this model has no joints; leave it out");

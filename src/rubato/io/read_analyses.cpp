@@ -59,6 +59,21 @@ std::optional<std::vector<ObservationDescription>> read_observe(TomlReader& read
 
 namespace {
 
+/// true, or the names of beams.
+SectionForcesDescription read_section_forces(TomlReader& reader) {
+  SectionForcesDescription wanted;
+  const toml::node* node = reader.node("section_forces");
+  wanted.where = reader.where("section_forces");
+  if (node && node->is_boolean()) {
+    wanted.of_all = reader.optional_bool("section_forces").value_or(false);
+  } else {
+    std::vector<Location> places;
+    if (const auto names = reader.optional_texts("section_forces", &places))
+      for (std::size_t i = 0; i < names->size(); ++i) wanted.beams.push_back({(*names)[i], "", places[i]});
+  }
+  return wanted;
+}
+
 OutputDescription read_output(TomlReader& reader) {
   OutputDescription output;
   auto table = reader.optional_table("output", reader.what() + ": output");
@@ -111,6 +126,7 @@ TransientDescription read_transient(TomlReader& reader) {
   transient.duration = reader.quantity("duration");
   transient.output = read_output(reader);
   transient.observe = read_observe(reader);
+  transient.section_forces = read_section_forces(reader);
   transient.energy = reader.optional_bool("energy").value_or(true);
   transient.allow_unstable = reader.optional_bool("allow_unstable").value_or(false);
   transient.project_velocities = reader.optional_bool("project_velocities").value_or(false);
@@ -200,6 +216,7 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::file
     else if (type == "static") {
       StaticDescription equilibrium = read_static(reader);
       equilibrium.observe = read_observe(reader);
+      equilibrium.section_forces = read_section_forces(reader);
       analysis.task = equilibrium;
     } else
       analysis.task = read_method_study(reader);

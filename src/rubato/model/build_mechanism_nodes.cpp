@@ -166,7 +166,9 @@ void take_structure(MechanismAssembly& assembly) {
   std::vector<Matrix3> inertia(structure.names.size() + 1, Matrix3::Zero());
   for (std::size_t i = 0; i < structure.names.size(); ++i) take_node(assembly, built, i, inertia[i + 1]);
   const std::vector<double> q = mechanism.numbers();
+  std::vector<std::size_t> first_of;  // of each beam element among the elements of the mechanism, and their end
   for (const LineElement& element : structure.elements) {
+    first_of.push_back(mechanism.elements.size());
     const Beam beam = beam_of(assembly, structure, element);
     mechanism.drawing.lines.push_back({DrawnLine::Kind::beam, {beam.first, {}}, {beam.second, {}}});
     if (assembly.in_plane())
@@ -175,6 +177,13 @@ void take_structure(MechanismAssembly& assembly) {
       take_space_beam(assembly, beam, element.orientation, q, inertia);
   }
   assembly.elements += structure.elements.size();
+  first_of.push_back(mechanism.elements.size());
+  for (const NamedLine& beam : built.beams)
+    for (std::size_t i = 0; i < beam.count; ++i) {
+      const std::size_t at = beam.first + i;
+      mechanism.beam_parts.push_back(
+          {beam.name, fmt::format("{}({})", beam.name, i + 1), first_of[at], first_of[at + 1] - first_of[at]});
+    }
   if (assembly.in_plane()) return;
   for (std::size_t node = 1; node < inertia.size(); ++node)
     if (inertia[node] != Matrix3::Zero()) mechanism.add_space_inertia(static_cast<Index>(node), inertia[node]);

@@ -229,6 +229,7 @@ class StructureBuilder {
     const Axis to = built_.structure.positions[static_cast<std::size_t>(last)];
     const std::string name = beam.name.empty() ? beam.nodes[0] + "-" + beam.nodes[1] : beam.name;
     const double length = (to - from).norm() / beam.elements;
+    built_.beams.push_back({name, built_.structure.elements.size(), static_cast<std::size_t>(beam.elements)});
     const int width = 3 * (built_.structure.dimension - 1);
     const auto properties_at = [&](bool is_first, bool is_last) {
       const auto both = static_cast<std::uint16_t>((is_first ? released[0] : 0) | (is_last ? released[1] << width : 0));

@@ -29,6 +29,7 @@ struct BuiltStructure {
   std::vector<NodeCoordinate> coordinates;  ///< in the order of the nodes; the first is coordinate `offset`
   std::unordered_set<std::string> fixed;    ///< names of those held by supports
   std::vector<NamedLine> lines;
+  std::vector<NamedLine> beams;  ///< all of them, FIRST-SECOND where they have no name
 };
 
 /// Evaluates and checks nodes, elements, masses and supports. A degree of freedom exists where something gives it an

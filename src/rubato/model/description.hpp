@@ -199,9 +199,19 @@ struct OutputDescription {
 };
 
 /// The state of equilibrium under the loads just before t = 0, held forces and held displacements.
+/// Of which beams section forces are kept.
+struct SectionForcesDescription {
+  bool of_all = false;
+  std::vector<ObservationDescription> beams;  ///< by their names
+  Location where;
+
+  bool is_wanted() const { return of_all || !beams.empty(); }
+};
+
 struct StaticDescription {
   std::optional<std::vector<ObservationDescription>> observe;        ///< all coordinates unless given
   std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
+  SectionForcesDescription section_forces;
 };
 
 /// A step that chooses itself: step = { tolerance = ... }.
@@ -226,7 +236,8 @@ struct TransientDescription {
   Quantity duration;                              ///< [s]
   OutputDescription output;
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
-  bool energy = true;                                          ///< keep the energy ledger
+  SectionForcesDescription section_forces;
+  bool energy = true;  ///< keep the energy ledger
   bool allow_unstable = false;
   bool project_velocities = false;  ///< of mechanisms: removes what their constraints forbid after each step
   Location project_velocities_where;

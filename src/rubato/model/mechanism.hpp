@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/beams/beam_forces.hpp>
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/joint_friction.hpp>
@@ -75,6 +76,7 @@ struct Mechanism {
   std::vector<char> is_rotation;         ///< [n]
   std::vector<MassEntry> masses;
   std::vector<std::unique_ptr<Element>> elements;
+  std::vector<BeamPart> beam_parts;
   std::vector<std::unique_ptr<Joint>> joints;
   std::vector<JointCoordinate> joint_coordinates;       ///< in the plane
   std::vector<SpaceJointCoordinate> space_coordinates;  ///< in space

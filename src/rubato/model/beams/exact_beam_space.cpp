@@ -1,3 +1,4 @@
+#include <rubato/model/beams/beam_forces.hpp>
 #include <rubato/model/beams/exact_beam_space.hpp>
 
 #include <cmath>
@@ -33,7 +34,7 @@ QuarterTangent quarter_tangent(double a) {
 }
 
 /// How a beam is strained, and by what forces of its section the nodes are moved.
-class SpaceBeamElement : public Element {
+class SpaceBeamElement : public Element, public BeamForces {
  public:
   SpaceBeamElement(std::string name, const SpaceNode& first, const SpaceNode& second, const double* q,
                    const Matrix3& axes1, const Matrix3& axes2, const SpaceBeamSection& section)
@@ -89,6 +90,11 @@ class SpaceBeamElement : public Element {
 
   Local forces(const Stress& stress, const Slopes& slopes) const {
     return length_ * slopes.strain.transpose() * stress.n + slopes.turn.transpose() * stress.m;
+  }
+  static void write(const Stress& stress, double* forces) {
+    Eigen::Map<Vector3> n(forces), m(forces + 3);
+    n = stress.n;
+    m = stress.m;
   }
   Tangent material_tangent(const Rows& strain, const Rows& turn, const Slopes& slopes) const {
     return length_ * slopes.strain.transpose() * section_.force.asDiagonal() * strain +
@@ -152,6 +158,8 @@ class ExactBeamSpace final : public SpaceBeamElement {
            (strain.dot(section_.force.cwiseProduct(strain)) + curvature.dot(section_.moment.cwiseProduct(curvature)));
   }
 
+  void section_forces(const Motion& motion, double* forces) const override { write(stress(at(motion.q)), forces); }
+
  private:
   Stress stress(const State& now) const {
     return {section_.force.cwiseProduct(now.strain - strain0_),
@@ -181,6 +189,10 @@ class ViscousBeamSpace final : public SpaceBeamElement {
     add_geometric(now, slopes, viscous, geometric);
     Eigen::Map<Tangent>(tangent, k, k) =
         stiffness * geometric + damping * material_tangent(slopes.strain, slopes.turn, slopes);
+  }
+
+  void section_forces(const Motion& motion, double* forces) const override {
+    write(stress(slopes_at(at(motion.q)), velocities(motion)), forces);
   }
 
  private:

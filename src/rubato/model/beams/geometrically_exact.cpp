@@ -1,3 +1,4 @@
+#include <rubato/model/beams/beam_forces.hpp>
 #include <rubato/model/beams/geometrically_exact.hpp>
 
 #include <algorithm>
@@ -9,7 +10,7 @@ namespace {
 constexpr int k = 6;
 
 /// How a beam is strained, and by what forces of its section the nodes are moved.
-class PlaneBeamElement : public Element {
+class PlaneBeamElement : public Element, public BeamForces {
  public:
   PlaneBeamElement(std::string name, const PlaneNode& first, const PlaneNode& second,
                    const std::array<double, 3>& position, const std::array<double, 3>& other,
@@ -52,6 +53,11 @@ class PlaneBeamElement : public Element {
     for (int i = 0; i < k; ++i) force[i] = normal * stretch[i] + across * slide[i];
     force[2] -= stress.moment;
     force[5] += stress.moment;
+  }
+  static void write(const Stress& stress, double* forces) {
+    forces[0] = stress.normal;
+    forces[1] = stress.across;
+    forces[2] = stress.moment;
   }
   /// Writes weight times L (E A stretch stretch^T + k G A slide slide^T) + E I/L of the angles.
   void material_tangent(double weight, const double* stretch, const double* slide, double* tangent) const {
@@ -121,6 +127,8 @@ class PlaneBeam final : public PlaneBeamElement {
             section_.bending * now.bend * now.bend);
   }
 
+  void section_forces(const Motion& motion, double* forces) const override { write(stress(at(motion)), forces); }
+
  private:
   Stress stress(const Strain& now) const {
     return {section_.axial * now.stretch, section_.shear * now.slide, section_.bending * now.bend};
@@ -161,6 +169,13 @@ class ViscousPlaneBeam final : public PlaneBeamElement {
     for (int i = 0; i < k; ++i)
       for (int j = 0; j < k; ++j)
         tangent[i * k + j] += axial * stretch[i] * of_stretch[j] + shear * slide[i] * of_slide[j];
+  }
+
+  void section_forces(const Motion& motion, double* forces) const override {
+    double stretch[k], slide[k], v[k];
+    slopes(at(motion), stretch, slide);
+    velocities(motion, v);
+    write(stress(stretch, slide, v), forces);
   }
 
  private:
