@@ -47,8 +47,10 @@ TEST(Analysis, ReadsModes) {
 }
 
 TEST(AnalysisError, AsksForAStepExceptOfTheExactFlow) {
-  EXPECT_EQ(verdict_with("step = 0.005\n", ""),
-            "study.toml:37:1: error: analysis \"response\": the key \"step\" [s] is missing");
+  EXPECT_EQ(
+      verdict_with("step = 0.005\n", ""),
+      "study.toml:37:1: error: analysis \"response\": the key \"step\" is missing: give its length [s], or step = "
+      "{ tolerance = 1e-3 } for steps that choose themselves");
   EXPECT_EQ(verdict_adding("method = \"exact\"\n"),
             "study.toml:40:8: error: analysis \"response\": the method exact takes no step; remove the key, or choose "
             "another "
@@ -155,7 +157,7 @@ TEST(AnalysisError, RefusesAKeyThatItDoesNotKnow) {
   EXPECT_EQ(verdict_adding("start = \"static\"\n"),
             "study.toml:42:1: error: analysis \"response\" has no key \"start\"; known: name, type, method, step, "
             "duration, "
-            "output, observe, energy, allow_unstable, project_velocities, initial, displacements");
+            "output, observe, section_forces, energy, allow_unstable, project_velocities, initial, displacements");
 }
 
 }  // namespace

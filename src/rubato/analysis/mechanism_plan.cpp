@@ -177,7 +177,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
                                          transient.start, parameters, transient.duration);
   } else {
-    if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
+    if (!description.step) throw InvalidInput(where, title + missing_step);
     const double step = positive_or(description.step, 0.0, title + "step", parameters);
     if (step > transient.duration)
       throw InvalidInput(

@@ -217,7 +217,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
     plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, plan.start,
                                          parameters, plan.duration, description.allow_unstable);
   } else if (!is_exact) {
-    if (!description.step) throw InvalidInput(where, title + "the key \"step\" [s] is missing");
+    if (!description.step) throw InvalidInput(where, title + missing_step);
     plan.step = positive(*description.step, parameters, title + "step", where);
     if (plan.step > plan.duration)
       throw InvalidInput(

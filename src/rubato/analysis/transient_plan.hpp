@@ -37,6 +37,10 @@ struct TransientPlan {
   double rows = 0.0;  ///< expected number of rows
 };
 
+/// What is wrong with a transient without a step.
+inline constexpr const char* missing_step =
+    "the key \"step\" is missing: give its length [s], or step = { tolerance = 1e-3 } for steps that choose themselves";
+
 /// The method that a description names, with the values of its parameters. Throws InvalidInput at its place.
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters);
 
