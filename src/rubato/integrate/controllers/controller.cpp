@@ -28,14 +28,17 @@ struct Deciding {
       return {false, h * std::max(pi.shrink_most, factor), 0.0};
     }
     const double now = std::max(e, 1e-10);  // an error of zero asks for the largest growth, not for an infinite one
-    double factor = factor_to(pi.aim / now);
+    // Ratios of errors, of which lengths are the roots: most steps stay as they are, and need none.
+    double ratio = pi.aim / now;
     if (history.last_error > 0.0) {
-      const double density = history.last_error / now * std::pow(h / history.last_step, p);
-      factor *= std::pow(std::min(1.0, density), pi.trend / p);
+      const double lengths = h == history.last_step ? 1.0 : std::pow(h / history.last_step, p);
+      const double density = history.last_error / now * lengths;
+      if (density < 1.0) ratio *= std::pow(density, pi.trend);
     }
-    if (factor >= factor_to(pi.aim * pi.aim) && factor < factor_to(pi.aim / pi.least)) return {true, h, 0.0};
+    if (ratio >= pi.aim * pi.aim && ratio < pi.aim / pi.least) return {true, h, 0.0};
+    const double factor = factor_to(ratio);
     const double next = h * std::clamp(factor, pi.shrink_most, history.was_rejected ? 1.0 : pi.grow_most);
-    if (factor < 1.0 || factor >= factor_to(pi.aim / pi.at_once)) return {true, next, 0.0};
+    if (ratio < 1.0 || ratio >= pi.aim / pi.at_once) return {true, next, 0.0};
     const double forgone = history.forgone + 1.0 - 1.0 / factor;
     return forgone < pi.patience ? Decision{true, h, forgone} : Decision{true, next, 0.0};
   }

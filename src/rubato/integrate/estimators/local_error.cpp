@@ -63,7 +63,7 @@ class LocalErrorEstimator final : public Estimator {
     if (!(third > 0.0)) return std::numeric_limits<double>::infinity();
     const double accepted = 0.5 * tolerance_ * scales_.size() / scales_.memory();
     if (c_.order == 1) return accepted * omega / (std::abs(c_.velocity) * third);
-    return std::sqrt(accepted / (std::hypot(c_.displacement, c_.velocity_next) * third));
+    return std::sqrt(accepted / (strength_ * third));
   }
 
  private:
@@ -93,8 +93,8 @@ class LocalErrorEstimator final : public Estimator {
 
   /// Of the slow part of q''', which is what the scales are told of.
   double of_what_lasts(const system::State& to, double h) {
-    const double strength = std::hypot(c_.displacement, c_.velocity_next), h3 = h * h * h;
-    slow_.look(now_.jump, h, std::cbrt(2.0 / (strength * h * h * scales_.memory())));
+    const double h3 = h * h * h;
+    slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
     now_.third = space_->squared(slow_.value());
     double third = now_.third, fourth;
     if (known_ >= 2) {
@@ -118,6 +118,7 @@ class LocalErrorEstimator final : public Estimator {
   double tolerance_;
   bool is_contact_ = false;
   ErrorConstants c_;
+  double strength_ = std::hypot(c_.displacement, c_.velocity_next);
   std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;
   SlowPart slow_;
