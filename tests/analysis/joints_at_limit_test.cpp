@@ -88,5 +88,41 @@ TEST(ContradictoryDrives, EndTheRunAndAreNamed) {
     }
 }
 
+// A force that jumps from nothing to ten times what the block's friction holds: no row shows more than the limit.
+TEST(JointsAtTheirLimit, ShowNoMoreThanTheyHoldWhereALoadJumps) {
+  for (const char* step : {"{ tolerance = 1e-4 }", "0.01"}) {
+    const MechanismStudy ran(std::string(R"text(
+[[body]]
+name = "block"
+mass = 2.0
+inertia = 0.1
+position = [0.0, 0.0]
+[[joint]]
+name = "rail"
+type = "prismatic"
+between = ["ground", "block"]
+at = [0.0, 0.0]
+axis = [1.0, 0.0]
+friction = { coefficient = 0.5, preload = 20.0 }
+[[force]]
+on = "block.x"
+expression = "t >= 0.5 ? 100 : 4"
+[[analysis]]
+name = "run"
+type = "transient"
+duration = 1.0
+step = )text") + step);
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    double before = 0.0;
+    for (std::size_t row = 0; row < ran.table("run").rows.size(); ++row) {
+      const double friction = ran.at(row, "run", "friction_force", "rail");
+      EXPECT_LE(std::abs(friction), 10.0 * (1.0 + 1e-6));
+      if (ran.at(row, "run", "time") <= 0.5) before = friction;
+    }
+    EXPECT_NEAR(before, -4.0, 1e-9) << step;  // up to the jump it holds what there is
+    EXPECT_NEAR(ran.last("run", "friction_force", "rail"), -10.0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace rubato

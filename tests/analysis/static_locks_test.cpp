@@ -112,6 +112,23 @@ acceleration = [0.0, -9.81]
 )" + rest;
 }
 
+// What it rests on stands in the table of events too, from which pictures are drawn.
+TEST(StaticLocks, AreToldAtTheStartOfARun) {
+  const MechanismStudy ran(flap("", R"(
+[[analysis]]
+name = "run"
+type = "transient"
+initial = "static"
+step = { tolerance = 1e-4 }
+duration = 0.6
+)"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& events = ran.table("run.events");
+  ASSERT_EQ(events.rows.size(), 2u);
+  EXPECT_EQ(ran.at(0, "run.events", "time"), 0.0);
+  EXPECT_NEAR(ran.at(1, "run.events", "time"), 0.5, 1e-9);
+}
+
 TEST(StaticLocks, CatchWhatWouldFallWithoutEnd) {
   const MechanismStudy stop(falling_block("lock = { at = -0.5, kind = \"stop\", stiffness = 1e3 }"));
   ASSERT_EQ(stop.report.status, analysis::RunStatus::done) << stop.report.message;

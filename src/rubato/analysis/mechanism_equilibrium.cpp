@@ -9,6 +9,7 @@
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +19,12 @@ namespace rubato::analysis {
 namespace {
 
 /// Which locks hold in an equilibrium.
-std::string held_locks(const system::State& state, const system::Mechanism& mechanism) {
-  std::string names;
+std::string held_locks(const system::State& state, const system::Mechanism& mechanism, const char* between) {
+  std::vector<std::string> names;
   const auto& locks = mechanism.model().locks;
   for (std::size_t i = 0; i < locks.size(); ++i)
-    if (state.phase[i] != model::lock_open) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", locks[i].name);
-  return names;
+    if (state.phase[i] != model::lock_open) names.push_back(locks[i].name);
+  return fmt::format("{}", fmt::join(names, between));
 }
 
 }  // namespace
@@ -105,6 +106,8 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   BeamSectionForces beams(mechanism, description.section_forces, "analysis \"" + name + "\": ");
   const ObservedBlocks observed(joints.with_angles(observed_or_all(description.observe, mechanism)));
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
+  if (const std::string held = held_locks(found.state, mechanism, "\n"); !held.empty())
+    layout.attributes.emplace_back("held_locks", held);
   observed.add(layout, {ObservedBlocks::Quantity::position});
   joints.add_displacements(layout);
   reactions.add(layout);
@@ -123,8 +126,8 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
   if (found.load_steps > 0)
     report.findings.push_back(fmt::format(
         "the loads were raised in {} steps: under all of them at once no equilibrium was found", found.load_steps));
-  if (const std::string held = held_locks(found.state, mechanism); !held.empty())
-    report.findings.push_back(fmt::format("held by the lock of {}", held));
+  if (const std::string held = held_locks(found.state, mechanism, "\", \""); !held.empty())
+    report.findings.push_back(fmt::format("held by the lock of \"{}\"", held));
   if (!found.is_stable)
     report.findings.push_back("the equilibrium is not stable: a motion that the joints leave goes away from it");
   return report;

@@ -183,7 +183,14 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
   }
   if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || is_stuck) {
     const std::string part = non_finite_part_ahead(report, mechanism, state);
-    if (!part.empty()) return fmt::format("at t = {} s {} has no finite value from there on", report.failed_at, part);
+    if (part.find("whose table") != std::string::npos)
+      return fmt::format(
+          "at t = {:.6g} s {} ends: the joint goes beyond its rows; let the table reach further, or say beyond = "
+          "\"hold\" "
+          "or \"zero\"",
+          report.failed_at, part);
+    if (!part.empty())
+      return fmt::format("at t = {:.6g} s {} has no finite value from there on", report.failed_at, part);
   }
   if (outcome == StepOutcome::not_converged || outcome == StepOutcome::singular || is_stuck) {
     const std::vector<std::string> joints = singular_joints(mechanism, state);

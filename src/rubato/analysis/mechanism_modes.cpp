@@ -21,6 +21,7 @@ constexpr Index default_count = 20, largest = 3000;
 system::State at_rest(const system::State& start, const system::Mechanism& mechanism,
                       std::vector<std::string>& warnings) {
   system::State state = start;
+  const bool moves = mechanism.size() > 0 && start.v.cwiseAbs().maxCoeff() > 1e-6;
   system::MechanismEquations equations(mechanism);
   if (!integrate::find_acceleration_at_rest(equations, state, model::Side::right)) return start;
   Vector force(mechanism.size()), gap(mechanism.constraint_count()), product(mechanism.size());
@@ -31,11 +32,27 @@ system::State at_rest(const system::State& start, const system::Mechanism& mecha
   Index place = 0;
   const double most = state.acceleration.size() > 0 ? state.acceleration.cwiseAbs().maxCoeff(&place) : 0.0;
   if (product.norm() > share * force.norm() && most > round_off)
-    warnings.push_back(fmt::format(
-        "the configuration is no equilibrium: \"{}\" accelerates by {:.4g} {}; about = \"static\" finds one",
-        mechanism.coordinates()[static_cast<std::size_t>(place)], most,
-        mechanism.model().is_rotation[static_cast<std::size_t>(place)] != 0 ? "rad/s2" : "m/s2"));
+    warnings.push_back(
+        fmt::format("the configuration is no equilibrium: \"{}\" accelerates by {:.4g} {}{}",
+                    mechanism.coordinates()[static_cast<std::size_t>(place)], most,
+                    mechanism.model().is_rotation[static_cast<std::size_t>(place)] != 0 ? "rad/s2" : "m/s2",
+                    moves ? "" : "; about = \"static\" finds one"));
   return state;
+}
+
+/// What is held still where it moves has other modes than it has in motion.
+void warn_of_motion(const system::State& state, const system::Mechanism& mechanism,
+                    std::vector<std::string>& warnings) {
+  constexpr double slow = 1e-6;
+  Index place = 0;
+  const double most = state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff(&place) : 0.0;
+  if (!(most > slow)) return;
+  warnings.push_back(
+      fmt::format("it moves there, \"{}\" by {:.4g} {}, and is held still: what its speed adds, centrifugal and "
+                  "Coriolis forces, is "
+                  "left out of these modes (what it stretches is in)",
+                  mechanism.coordinates()[static_cast<std::size_t>(place)], most,
+                  mechanism.model().is_rotation[static_cast<std::size_t>(place)] != 0 ? "rad/s" : "m/s"));
 }
 
 MechanismModesPlan::Reached reached_by(const std::string& title, const model::ReachedDescription& description,
@@ -106,6 +123,7 @@ system::State reach(const std::string& name, const MechanismModesPlan::Reached& 
   if (!reached.settles) {
     system::State held = march.state();
     std::fill(held.rubbing.begin(), held.rubbing.end(), model::friction_free);
+    warn_of_motion(held, mechanism, report.warnings);
     return at_rest(held, mechanism, report.warnings);
   }
   const MechanismStatic found = equilibrium_near(march.state(), mechanism);
@@ -186,7 +204,7 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
   write_configuration(name, mechanism.model(), std::span(state.q.data(), static_cast<std::size_t>(state.q.size())),
                       context.sink);
   if (modes.freedoms == 0)
-    report.message = "the joints leave no motion";
+    report.findings.push_back("there are no modes: the joints and locks leave no motion");
   else if (!modes.is_stable)
     report.message = fmt::format(
         "the {0} is not stable: a motion that the joints leave {3}, as exp({1:.4g}/s t); {2}",

@@ -59,9 +59,31 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                  {{"type", "energy"}}});
 }
 
-void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
+void MechanismRecorder::balance(const system::State& state) {
   balanced_ = state;
-  if (!is_balanced && !integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
+  if (!integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
+  // A load that jumps there lets a joint go in this instant: it has held until now.
+  equations_.go_to(balanced_, model::Side::right);
+  constexpr double round_off = 1e-6;
+  for (std::size_t i = 0; i < state.rubbing.size(); ++i) {
+    if (state.rubbing[i] != model::friction_sticks) continue;
+    const double excess = equations_.friction_size(i, balanced_.multiplier) -
+                          (1.0 + round_off) * equations_.friction_limit(i, balanced_.multiplier);
+    if (!(excess > equations_.negligible_friction(i))) continue;
+    const Vector multiplier = balanced_.multiplier, acceleration = balanced_.acceleration;
+    balanced_ = state;
+    if (integrate::find_acceleration(equations_, balanced_, model::Side::left)) return;
+    balanced_.multiplier = multiplier;
+    balanced_.acceleration = acceleration;
+    return;
+  }
+}
+
+void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
+  if (is_balanced)
+    balanced_ = state;
+  else
+    balance(state);
   joints_.go_to(state);
   joints_.positions(positions_);
   joints_.velocities(velocities_);

@@ -33,6 +33,9 @@ class MechanismRecorder {
   long rows() const { return count_; }
 
  private:
+  /// The state with the accelerations and multipliers of equilibrium.
+  void balance(const system::State& state);
+
   const system::Mechanism& mechanism_;
   JointCoordinates joints_;
   ObservedBlocks observed_;

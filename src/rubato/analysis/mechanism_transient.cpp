@@ -109,6 +109,14 @@ std::string energy_told(const integrate::LockEvent& event) {
   return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
 }
 
+/// The locks on which a run starts at rest, as if they had engaged then.
+std::vector<integrate::LockEvent> locks_at_start(const system::State& start) {
+  std::vector<integrate::LockEvent> events;
+  for (std::size_t i = 0; i < start.phase.size(); ++i)
+    if (start.phase[i] != model::lock_open) events.push_back({start.t, static_cast<int>(i)});
+  return events;
+}
+
 /// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
 void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism,
                    std::vector<std::string>& findings) {
@@ -154,7 +162,9 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   const system::State& state = march.state();
   observer.finish(state);
   context.progress.end();
-  write_events(name, march.timeline().events(), mechanism, context.sink);
+  std::vector<integrate::LockEvent> events = locks_at_start(transient.start);
+  events.insert(events.end(), march.timeline().events().begin(), march.timeline().events().end());
+  write_events(name, events, mechanism, context.sink);
   RunReport run;
   run.statistics = statistics(report, state.t);
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));

@@ -136,7 +136,7 @@ class TabulatedLaw final : public CoordinateLaw<Coordinate> {
   std::unique_ptr<Element> clone() const override { return std::make_unique<TabulatedLaw>(*this); }
   bool has_kinks() const override { return true; }
   std::string domain() const override {
-    return fmt::format(", whose table reaches from {} to {}", table_.at.front(), table_.at.back());
+    return fmt::format(", whose table reaches from {} to {},", table_.at.front(), table_.at.back());
   }
   double stored_energy(const Motion& motion) const override {
     return when_.is_at_work(motion) ? table_(s_.value(motion.q)).potential : 0.0;

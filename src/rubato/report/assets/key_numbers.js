@@ -2,7 +2,16 @@
 
 // The places of the key numbers of a label.
 const key_places = {largest: 0, rms: 1, late: 2, time: 3, last: 4};
-const key_number = (table, variable, row, name) => number_node(table.key_numbers[variable.index][row][key_places[name]], 4);
+function key_number(table, variable, row, name) {
+  const value = table.key_numbers[variable.index][row][key_places[name]];
+  return number_node(name !== "time" && value !== null && Math.abs(value) < round_off * largest_of(table, variable) ? 0 : value, 4);
+}
+
+// Beside the largest number of its quantity what is smaller is nothing.
+const round_off = 1e-12;
+function largest_of(table, {index}) {
+  return table.key_numbers[index].reduce((most, row) => Math.max(most, row[key_places.largest] ?? 0), 0);
+}
 
 /** A row a label, three columns a quantity; nodes inside beams are left out. */
 function key_numbers(table, variables, caption) {

@@ -47,9 +47,9 @@ function motion_player(scene, events) {
   return make_player({scene, moments, seconds: 8, caption: scene_caption(scene, "The structure in motion")});
 }
 
-/** A state of equilibrium. */
-function shape_figure(scene) {
-  const moments = {count: 1, values: () => scene.values[0], label: () => ""};
+/** A state of equilibrium. held: names of joints whose lock holds in it. */
+function shape_figure(scene, held) {
+  const moments = {count: 1, values: () => scene.values[0], label: () => "", held: () => held};
   return make_player({scene, moments, seconds: 1, caption: scene_caption(scene, "The structure in equilibrium")});
 }
 
@@ -121,6 +121,7 @@ function write_scene(chapter, analysis) {
   } else if (scene.coordinate.length > 1) {
     add_section(chapter, "The structure in motion", motion_player(scene, events_of(analysis)));
   } else {
-    add_section(chapter, "The structure", shape_figure(scene));
+    const held = analysis.tables.flatMap((table) => (table.attributes.held_locks ?? "").split("\n"));
+    add_section(chapter, "The structure", shape_figure(scene, new Set(held)));
   }
 }
