@@ -227,5 +227,75 @@ lock = { at = 0.5, kind = ")" + std::string(kind) +
   }
 }
 
+// A pendulum that may turn down to -0.05 rad, and a stop between its end and the ground that it would meet only beyond:
+// what lies behind the first lock is not on the way.
+TEST(StaticLocks, AreMetInTheOrderOfTheWay) {
+  const MechanismStudy ran(R"(
+[[body]]
+name = "arm"
+mass = 2.0
+inertia = 0.2
+position = [0.5, 0.0]
+[[joint]]
+name = "pin"
+type = "revolute"
+between = ["ground", "arm"]
+at = [0.0, 0.0]
+lock = { at = -0.05, kind = "stop" }
+[[joint]]
+name = "prop"
+type = "strut"
+between = ["ground", "arm"]
+at = [1.0, -1.0]
+to = [1.0, 0.0]
+lock = { at = 0.9, kind = "stop" }
+[gravity]
+acceleration = [0.0, -9.81]
+)" + rest);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  EXPECT_NEAR(ran.at(0, "rest", "angle", "pin"), -0.05, 1e-10);
+  EXPECT_EQ(ran.report.findings.front(), "held by the lock of \"pin\"");
+  EXPECT_NEAR(ran.at(0, "rest", "reaction_lock_force", "prop"), 0.0, 1e-12);
+}
+
+// Two rods of 0.5 m, and a stop that their ends could reach only at 1.02 m: the chain hangs down.
+TEST(StaticLocks, OutOfReachDoNotMatter) {
+  const MechanismStudy ran(R"(
+[[body]]
+name = "upper"
+mass = 1.0
+inertia = 0.02
+position = [0.25, 0.0]
+[[body]]
+name = "lower"
+mass = 1.0
+inertia = 0.02
+position = [0.5, 0.25]
+angle = 1.5707963267948966
+[[joint]]
+name = "root"
+type = "revolute"
+between = ["ground", "upper"]
+at = [0.0, 0.0]
+[[joint]]
+name = "knee"
+type = "revolute"
+between = ["upper", "lower"]
+at = [0.5, 0.0]
+[[joint]]
+name = "reach"
+type = "strut"
+between = ["ground", "lower"]
+at = [0.0, 0.0]
+to = [0.5, 0.5]
+lock = { at = 1.02, kind = "stop" }
+[gravity]
+acceleration = [0.0, -9.81]
+)" + rest);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  EXPECT_NEAR(ran.at(0, "rest", "position", "upper.y"), -0.25, 1e-9);
+  EXPECT_NEAR(ran.at(0, "rest", "position", "lower.y"), -0.75, 1e-9);
+}
+
 }  // namespace
 }  // namespace rubato

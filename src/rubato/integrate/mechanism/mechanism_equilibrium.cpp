@@ -46,7 +46,9 @@ class Search {
   MechanismEquilibrium downhill() {
     scale_ = stiffness_per_mass();
     double shift = first_shift * scale_, last = HUGE_VAL;
-    for (found_.iterations = 0; found_.iterations < plan_.most_iterations; ++found_.iterations) {
+    const int most =
+        static_cast<int>(plan_.most_iterations / (locks_.any_open(found_.state) ? shorter_with_locks : 1.0));
+    for (found_.iterations = 0; found_.iterations < most; ++found_.iterations) {
       if (!factorise(shift)) {
         if (!std::isfinite(found_.residual) || !(shift < most_shift * scale_)) return found_;
         shift *= 10.0;  // a pivot that vanishes does so with one shift
@@ -130,9 +132,21 @@ class Search {
   /// Returns whether that meets a lock.
   bool advance(const Correction& correction) {
     system::State& state = found_.state;
-    mechanism_.retract(state.q, correction.share * force_, next_);
+    double share = correction.share;
+    mechanism_.retract(state.q, share * force_, next_);
+    if (locks_.passes(state, next_, extent_)) {
+      // Up to the first lock: what lies behind it is not on the way.
+      constexpr int halvings = 40;
+      double before = 0.0;
+      for (int i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (before + share);
+        mechanism_.retract(state.q, middle * force_, next_);
+        (locks_.passes(state, next_, extent_) ? share : before) = middle;
+      }
+      mechanism_.retract(state.q, share * force_, next_);
+    }
     std::swap(state.q, next_);
-    state.multiplier += correction.share * constraint_;
+    state.multiplier += share * constraint_;
     return locks_.meet(state, extent_);
   }
 
@@ -158,6 +172,7 @@ class Search {
     return true;
   }
 
+  static constexpr double shorter_with_locks = 0.2;
   static constexpr double settled = 1e-6;  // a shift that leaves a linear convergence of soft modes to be waited for
 
   /// Stiffness over mass of the mechanism in an arbitrary direction [1/s2], from a small motion along it.
@@ -191,9 +206,12 @@ class Search {
       double& largest = is_rotation ? turn : way;
       largest = std::max(largest, std::abs(force_[i]));
     }
+    // Where locks may be met joints must not come apart on the way: a lock out of reach would be.
+    const double shorter = locks_.any_open(found_.state) ? shorter_with_locks : 1.0;
     double share = 1.0;
-    if (turn > plan_.largest_turn) share = std::min(share, plan_.largest_turn / turn);
-    if (way > plan_.largest_shift * extent_) share = std::min(share, plan_.largest_shift * extent_ / way);
+    if (turn > shorter * plan_.largest_turn) share = std::min(share, shorter * plan_.largest_turn / turn);
+    if (way > shorter * plan_.largest_shift * extent_)
+      share = std::min(share, shorter * plan_.largest_shift * extent_ / way);
     return share;
   }
 

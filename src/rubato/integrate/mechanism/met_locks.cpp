@@ -1,5 +1,6 @@
 #include <rubato/integrate/mechanism/met_locks.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rubato::integrate {
@@ -10,9 +11,9 @@ MetLocks::MetLocks(const system::Mechanism& mechanism, const system::State& give
     holds_for_good_.push_back(locks[i].is_latch && given.phase[i] == model::lock_engaged);
 }
 
-double MetLocks::beyond(std::size_t lock, const system::State& state) const {
+double MetLocks::beyond(std::size_t lock, const Vector& q) const {
   const model::Lock& of = mechanism_.model().locks[lock];
-  return of.sign * (of.s.value(state.q.data()) - of.at);
+  return of.sign * (of.s.value(q.data()) - of.at);
 }
 
 double MetLocks::nothing(std::size_t lock, double extent) const {
@@ -27,10 +28,20 @@ bool MetLocks::may_change(std::size_t lock) {
   return false;
 }
 
+bool MetLocks::any_open(const system::State& state) const {
+  return std::any_of(state.phase.begin(), state.phase.end(), [](int phase) { return phase == model::lock_open; });
+}
+
+bool MetLocks::passes(const system::State& state, const Vector& q, double extent) const {
+  for (std::size_t i = 0; i < holds_for_good_.size(); ++i)
+    if (state.phase[i] == model::lock_open && beyond(i, q) > nothing(i, extent)) return true;
+  return false;
+}
+
 bool MetLocks::meet(system::State& state, double extent) {
   bool has_met = false;
   for (std::size_t i = 0; i < holds_for_good_.size(); ++i) {
-    if (state.phase[i] != model::lock_open || !(beyond(i, state) > nothing(i, extent)) || !may_change(i)) continue;
+    if (state.phase[i] != model::lock_open || !(beyond(i, state.q) > nothing(i, extent)) || !may_change(i)) continue;
     state.phase[i] = model::lock_engaged;
     has_met = true;
   }
@@ -45,7 +56,7 @@ bool MetLocks::release(system::State& state, double extent) {
     const model::Lock& lock = mechanism_.model().locks[i];
     if (state.phase[i] == model::lock_open || holds_for_good_[i] != 0) continue;
     const bool pulls = lock.is_rigid() ? lock.sign * state.multiplier[mechanism_.first_row(lock.joint)] < -no_force
-                                       : beyond(i, state) < -nothing(i, extent);
+                                       : beyond(i, state.q) < -nothing(i, extent);
     if (!pulls || !may_change(i)) continue;
     state.phase[i] = model::lock_open;
     if (lock.is_rigid()) state.multiplier[mechanism_.first_row(lock.joint)] = 0.0;

@@ -7,12 +7,17 @@
 namespace rubato::integrate {
 
 /// Which locks hold while an equilibrium is looked for: those that the way to it meets, until they would have to pull.
-/// What the way leads beyond engages at once, so that nothing falls through its stop; what then pulls at a place where
-/// all forces balance lets go. A latch that held at the start holds for good; one that is met is tried like a stop.
+/// What the way leads beyond engages where it does, so that nothing falls through its stop; what then pulls at a place
+/// where all forces balance lets go. A latch that held at the start holds for good; one that is met is tried like a
+/// stop.
 class MetLocks {
  public:
   MetLocks(const system::Mechanism& mechanism, const system::State& given);
 
+  /// Whether a lock is open that might be met.
+  bool any_open(const system::State& state) const;
+  /// Whether a configuration lies beyond a lock that is open in the state.
+  bool passes(const system::State& state, const Vector& q, double extent) const;
   /// Engages open locks that the state lies beyond. Returns whether there were any.
   /// @param extent  of the mechanism [m]
   bool meet(system::State& state, double extent);
@@ -25,7 +30,7 @@ class MetLocks {
 
  private:
   bool may_change(std::size_t lock);
-  double beyond(std::size_t lock, const system::State& state) const;
+  double beyond(std::size_t lock, const Vector& q) const;
   /// A way beyond a lock that is none [rad] or [m].
   double nothing(std::size_t lock, double extent) const;
 
