@@ -124,5 +124,50 @@ step = )text") + step);
   }
 }
 
+// A lever of 1 kg on a prop is lifted by 10 t N in its middle: the prop lets go when the weight is borne, its dry hinge
+// of 0.3 N m later. What steps between take from interpolation must not be taken for either.
+TEST(JointsAtTheirLimit, LetALeverGoFromItsPropAndThenSlip) {
+  for (const char* step : {"{ tolerance = 1e-5 }", "0.001", "0.0002"}) {
+    const MechanismStudy ran(std::string(R"text(
+[gravity]
+acceleration = [0.0, -9.81]
+[[body]]
+name = "lever"
+mass = 1.0
+inertia = 0.05
+position = [0.5, 0.0]
+[[joint]]
+name = "hinge"
+type = "revolute"
+between = ["ground", "lever"]
+at = [0.0, 0.0]
+friction = { coefficient = 0.3, preload = 2.0, radius = 0.5 }
+[[joint]]
+name = "prop"
+type = "strut"
+between = ["ground", "lever"]
+at = [1.0, -1.0]
+to = [1.0, 0.0]
+lock = { at = 0.9999, kind = "stop" }
+[[force]]
+on = "lever.y"
+expression = "10*t"
+[[analysis]]
+name = "run"
+type = "transient"
+initial = "static"
+duration = 1.2
+output = { times = [1.2] }
+step = )text") + step);
+    ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << step << ": " << ran.report.message;
+    const auto& events = ran.table("run.events");
+    ASSERT_GE(events.rows.size(), 3u);
+    EXPECT_NEAR(ran.at(1, "run.events", "time"), 0.981, 1e-6) << step;
+    EXPECT_NEAR(ran.last("run.events", "time"), 1.041, 1e-4) << step;  // the arm lies 1e-4 rad low
+    // I phi'' = 5 (t - 1.041) with I = 0.05 + 0.25
+    EXPECT_NEAR(ran.last("run", "angle", "hinge"), -1e-4 + 5.0 / 0.3 * std::pow(1.2 - 1.041, 3) / 6.0, 2e-5) << step;
+  }
+}
+
 }  // namespace
 }  // namespace rubato

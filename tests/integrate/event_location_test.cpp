@@ -194,7 +194,7 @@ struct Accumulation final : Timeline {
   bool restart(system::State& state) override { return structure.restart(state); }
   Passage pass(const system::State&, system::State&, double) override { return Passage::continues; }
   double resolution() const override { return 1e-12; }
-  Crossing first_crossing(const system::State& from, const system::State& to, double least) override {
+  Crossing first_crossing(const system::State& from, const system::State& to, double least, integrate::Look) override {
     for (Index k = 1; k < 60; ++k) {
       const double share = (time(k) - from.t) / (to.t - from.t);
       if (time(k) > from.t && share >= least && time(k) <= to.t) return {k, share};

@@ -128,13 +128,7 @@ class Marcher {
     if (!(length.t1 > base_.t)) return fail({StepOutcome::too_small, -1}, length.step);
     if (!has_tried(length)) return;
     bool is_event = false;
-    if (plan_.locate_events) {
-      // A step of the resolution would be made of round-off.
-      const double least = std::max(least_progress * std::min(wanted_, plan_.largest), 10.0 * timeline_.resolution());
-      const Crossing crossing = timeline_.first_crossing(*from_, to_, least / length.step);
-      is_event = crossing.guard >= 0;
-      if (is_event && !has_located(crossing, least, length)) return;
-    }
+    if (plan_.locate_events && !has_looked_for_events(length, is_event)) return;
     const double error = estimator_.error(*from_, to_, length.step);
     report_.solves += estimator_.solves_a_try();
     const Decision decision = decide(plan_.controller, {length.step, error, estimator_.exponent()}, history_);
@@ -180,6 +174,30 @@ class Marcher {
     return false;
   }
 
+  /// Looks for a transition in the step that was tried, and shortens it to end there. Returns false where a try fails.
+  bool has_looked_for_events(Length& length, bool& is_event) {
+    // A step of the resolution would be made of round-off.
+    const double least = std::max(least_progress * std::min(wanted_, plan_.largest), 10.0 * timeline_.resolution());
+    Crossing crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::between);
+    if (crossing.guard >= 0 && crossing.seen < 1.0) {
+      // Between the ends, where stiff parts make forces of what interpolation errs by: a step there tells.
+      const Length whole = length;
+      note(whole.step, std::numeric_limits<double>::quiet_NaN(), TryOutcome::event);
+      length = length_of(std::max(crossing.seen * whole.step, std::min(least, 0.5 * whole.step)));
+      ++report_.event_tries;
+      if (!has_tried(length)) return false;
+      crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::at_ends);
+      if (crossing.guard < 0) {
+        note(length.step, std::numeric_limits<double>::quiet_NaN(), TryOutcome::event);
+        length = whole;
+        if (!has_tried(length)) return false;
+        crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::at_ends);
+      }
+    }
+    is_event = crossing.guard >= 0;
+    return !is_event || has_located(crossing, least, length);
+  }
+
   /// Shortens a step beyond a transition until it ends there.
   /// @param least  transitions before it are passed over [s]
   bool has_located(Crossing crossing, double least, Length& length) {
@@ -203,7 +221,7 @@ class Marcher {
       if (!(length.t1 > base_.t)) return fail({StepOutcome::too_small, -1}, length.step), false;
       if (!has_tried(length)) return false;
       ++report_.event_tries;
-      const Crossing now = timeline_.first_crossing(*from_, to_, least / at);
+      const Crossing now = timeline_.first_crossing(*from_, to_, least / at, Look::at_ends);
       if (now.guard >= 0) crossing = now;  // perhaps another, which comes first
       const GuardValue guard = timeline_.guard(crossing.guard, *from_, to_);
       (now.guard >= 0 ? high : low) = at;

@@ -219,7 +219,7 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
   return 1.0;
 }
 
-Crossing StructureTimeline::first_crossing(const system::State& from, const system::State& to, double least) {
+Crossing StructureTimeline::first_crossing(const system::State& from, const system::State& to, double least, Look) {
   Crossing first;
   first.share = HUGE_VAL;
   for (Index i = 0; i < system_.contact_count(); ++i) {

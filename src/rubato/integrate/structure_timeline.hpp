@@ -25,7 +25,7 @@ class StructureTimeline final : public Timeline {
   bool restart(system::State& state) override;
   Passage pass(const system::State& before, system::State& state, double shift) override;
   double resolution() const override { return resolution_; }
-  Crossing first_crossing(const system::State& from, const system::State& to, double least) override;
+  Crossing first_crossing(const system::State& from, const system::State& to, double least, Look look) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
  private:

@@ -10,6 +10,13 @@ namespace rubato::integrate {
 struct Crossing {
   Index guard = -1;    ///< -1: there is none
   double share = 1.0;  ///< of the step after which it is expected, in (0, 1]
+  double seen = 1.0;   ///< where in the step its guard is negative; below 1 by interpolation, which may err
+};
+
+/// Where in a step transitions are looked for.
+enum class Look {
+  between,  ///< in its middle too, by interpolation, where guards have no rate
+  at_ends
 };
 
 /// A guard function at the end of a step: positive before the transition that it watches, negative after it.
@@ -54,7 +61,7 @@ class Timeline {
   /// The first transition within a step, by interpolation between its ends.
   /// @param least  transitions before this share of the step are passed over: they were located by the last step, or
   ///               follow it so closely that locating each would stop the march
-  virtual Crossing first_crossing(const system::State& from, const system::State& to, double least) = 0;
+  virtual Crossing first_crossing(const system::State& from, const system::State& to, double least, Look look) = 0;
 
   /// The guard of a transition that first_crossing found in a step from the same state, at the end of another.
   virtual GuardValue guard(Index guard, const system::State& from, const system::State& to) = 0;

@@ -117,15 +117,18 @@ bool MechanismTimeline::restart(system::State& state) {
 void MechanismTimeline::count_transition(std::size_t guard, const system::State& state) {
   constexpr int most = 100;
   constexpr double window = 1e9;  // over the resolution, 1e-12 of the run
-  constexpr double still = 1e-9;  // ten times what Newton's method leaves of positions
   const auto& model = mechanism_.model();
   const model::FreeCoordinate& s = guard < row_.size() ? model.locks[guard].s : model.frictions[guard - row_.size()].s;
   const double value = s.value(state.q.data());
-  const double size = s.is_angle() ? 1.0 : 1.0 + state.q.cwiseAbs().maxCoeff();
   Transitions& past = transitions_[guard];
-  if (!(std::abs(value - past.at) <= still * size && state.t - past.since <= window * resolution_))
+  if (!(std::abs(value - past.at) <= no_way(s, state) && state.t - past.since <= window * resolution_))
     past = {state.t, value, 0};
   if (++past.count > most) chattering_ = static_cast<Index>(guard);
+}
+
+double MechanismTimeline::no_way(const model::FreeCoordinate& s, const system::State& state) const {
+  constexpr double still = 1e-9;  // ten times what Newton's method leaves of positions
+  return still * (s.is_angle() ? 1.0 : 1.0 + state.q.cwiseAbs().maxCoeff());
 }
 
 const MechanismTimeline::Balanced& MechanismTimeline::balanced(const system::State& state) {

@@ -45,7 +45,7 @@ class MechanismTimeline final : public Timeline {
   bool restart(system::State& state) override;
   Passage pass(const system::State& before, system::State& state, double shift) override;
   double resolution() const override { return resolution_; }
-  Crossing first_crossing(const system::State& from, const system::State& to, double least) override;
+  Crossing first_crossing(const system::State& from, const system::State& to, double least, Look look) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
   const std::vector<LockEvent>& events() const { return events_; }
@@ -79,6 +79,8 @@ class MechanismTimeline final : public Timeline {
   Rubbing rubbing_after(const system::State& before, system::State& state);
   /// Makes what drives held slide the way in which they begin to move it.
   void slide_with_drives(std::size_t friction, system::State& state);
+  /// A way of a coordinate that is none [rad] or [m].
+  double no_way(const model::FreeCoordinate& s, const system::State& state) const;
   /// Counts a transition of a guard.
   void count_transition(std::size_t guard, const system::State& state);
   /// Notes what friction did since `old`.
@@ -88,9 +90,10 @@ class MechanismTimeline final : public Timeline {
   /// The state at a share of a step, by the cubic of its positions and the chord of its velocities: slopes of
   /// velocities are those of vibrations too, and what is stiffly damped would turn their errors into forces.
   void interpolate(const system::State& from, const system::State& to, double share, system::State& out) const;
-  /// Where a guard without a rate first passes zero, as a share of the step; 2: nowhere. Its values at both ends and in
+  /// Where a guard without a rate first passes zero; after a share of 2: nowhere. Its values at both ends and in
   /// the middle give a parabola; where that turns round close to zero the guard is looked at.
-  double first_passage(std::size_t guard, const system::State& from, const system::State& to, double least);
+  Crossing first_passage(std::size_t guard, const system::State& from, const system::State& to, double least,
+                         Look look);
   bool has_rate(std::size_t guard, const system::State& from) const;
   bool is_watched(std::size_t lock, const system::State& state) const;
   /// Opens rigid stops that would pull after a jump. Returns false where no acceleration is found.
