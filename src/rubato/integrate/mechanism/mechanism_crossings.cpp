@@ -13,26 +13,35 @@ double cubic(double x, double y0, double slope0, double y1, double slope1) {
   return rest * rest * ((1.0 + 2.0 * x) * y0 + x * slope0) + x * x * ((1.0 + 2.0 * rest) * y1 - rest * slope1);
 }
 
-/// Where the cubic through values and slopes at both ends of [0, 1] first becomes negative from `least` on; 2: nowhere.
-/// It may cross and come back: it is searched in parts.
-double first_zero(double least, double y0, double slope0, double y1, double slope1) {
+/// Where the cubic through values and slopes at both ends of [0, 1] first becomes negative from `least` on, 2: nowhere;
+/// and where it is most so, of eight parts: 1 where it is at the end.
+struct Zero {
+  double at = 2.0, seen = 1.0;
+};
+Zero first_zero(double least, double y0, double slope0, double y1, double slope1) {
   constexpr int parts = 8;
-  double low = least, at_low = cubic(least, y0, slope0, y1, slope1);
+  Zero zero;
+  double low = least, at_low = cubic(least, y0, slope0, y1, slope1), most = 0.0;
   for (int part = 1; part <= parts; ++part) {
     const double high = std::max(least, static_cast<double>(part) / parts);
     const double at_high = part == parts ? y1 : cubic(high, y0, slope0, y1, slope1);
-    if (at_high < 0.0 && at_high < at_low) {
+    if (at_high < 0.0 && at_high < at_low && zero.at > 1.0) {
       double left = low, right = high;
       for (int k = 0; k < 50 && at_low > 0.0; ++k) {
         const double middle = 0.5 * (left + right);
         (cubic(middle, y0, slope0, y1, slope1) > 0.0 ? left : right) = middle;
       }
-      return std::min(at_low > 0.0 ? right : low, 1.0);
+      zero.at = std::min(at_low > 0.0 ? right : low, 1.0);
+    }
+    if (at_high < most) {
+      most = at_high;
+      zero.seen = high;
     }
     low = high;
     at_low = at_high;
   }
-  return 2.0;
+  if (y1 < 0.0) zero.seen = 1.0;
+  return zero;
 }
 
 }  // namespace
@@ -53,12 +62,12 @@ Crossing MechanismTimeline::first_passage(std::size_t i, const system::State& fr
                                           double least, Look look) {
   const auto index = static_cast<Index>(i);
   const double a = guard_at(i, from, to.stuck_at).value, b = guard_at(i, to, to.stuck_at).value;
-  if (look == Look::at_ends) return {index, first_zero(least, a, b - a, b, b - a), 1.0};
+  if (look == Look::at_ends) return {index, first_zero(least, a, b - a, b, b - a).at};
   if (!has_halfway_) interpolate(from, to, 0.5, halfway_);
   has_halfway_ = true;
   const double middle = guard_at(i, halfway_, to.stuck_at).value;
   const double slope = 4.0 * middle - 3.0 * a - b, curvature = 4.0 * (a + b - 2.0 * middle);
-  const double found = first_zero(least, a, slope, b, slope + curvature);
+  const double found = first_zero(least, a, slope, b, slope + curvature).at;
   const double turn = -slope / curvature, at_turn = a + 0.5 * slope * turn;
   const double seen = b < 0.0 ? 1.0 : middle < 0.0 ? 0.5 : std::clamp(turn, least, 1.0);
   constexpr double close = 0.1;
@@ -89,7 +98,10 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
         if (std::max({std::abs(a.value), std::abs(b.value), std::abs(h * a.rate), std::abs(h * b.rate)}) <= nothing)
           continue;
       }
-      crossing = {static_cast<Index>(i), first_zero(least, a.value, h * a.rate, b.value, h * b.rate)};
+      const double chord = b.value - a.value;
+      const Zero zero = look == Look::at_ends ? first_zero(least, a.value, chord, b.value, chord)
+                                              : first_zero(least, a.value, h * a.rate, b.value, h * b.rate);
+      crossing = {static_cast<Index>(i), zero.at, zero.seen};
     } else {
       crossing = first_passage(i, from, to, least, look);
     }
