@@ -187,6 +187,9 @@ TEST(ReadMechanism, PointsToWhatTakesASecondLockOrALoadThatIsGiven) {
         verdict_with(lock, "friction = { coefficient = 0.1, radius = 0.1, normal_load = " + load + " }"),
         "study.toml:21:61: error: joint \"A\": friction: normal_load is \"reaction\", the joint's own; a load that "
         "is given [N] is \"preload\"");
+  EXPECT_EQ(
+      verdict_with(lock, "friction = { coefficient = 0.1, radius = 0.1, normal_force = \"reaction\" }"),
+      "study.toml:21:47: error: joint \"A\": friction has no key \"normal_force\"; did you mean \"normal_load\"?");
 }
 
 TEST(ReadMechanism, NamesEveryKeyAndTheTableThatTakesAType) {

@@ -140,6 +140,10 @@ FrictionDescription read_friction(TomlReader& reader, JointDescription::Type typ
                                    "\"preload\"",
                                    reader.what()));
   const auto load = reader.optional_word("normal_load", {"reaction"});
+  if (!friction.preload && !load) {
+    reader.refuse_misspelling_of("normal_load");
+    reader.refuse_misspelling_of("preload");
+  }
   if (friction.preload.has_value() == load.has_value())
     throw InvalidInput(reader.where(),
                        fmt::format("{} needs either \"preload\" [N] or normal_load = \"reaction\"", reader.what()));
