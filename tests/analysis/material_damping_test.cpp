@@ -2,6 +2,7 @@
 
 #include <support/mechanism_study.hpp>
 #include <support/prepared_study.hpp>
+#include <support/steel_strip.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,40 +15,8 @@ namespace rubato {
 namespace {
 
 using testing::MechanismStudy;
+using testing::strip;
 
-/// A clamped steel strip of 1 m, in the plane or in space, and its modes.
-std::string strip(const std::string& beam, const std::string& material, bool in_space = false) {
-  return fmt::format(R"(
-[[node]]
-name = "a"
-position = [0.0, 0.0{0}]
-[[node]]
-name = "b"
-position = [1.0, 0.0{0}]
-[[support]]
-node = "a"
-fix = [{1}]
-[[material]]
-name = "steel"
-young = 2.1e11
-poisson = 0.3
-density = 7800.0
-{2}
-[[section]]
-name = "strip"
-area = 1e-4
-inertia = {3}
-shear_factor = 0.83
-[[beam]]
-name = "arm"
-nodes = ["a", "b"]
-section = "strip"
-material = "steel"
-{4}
-)",
-                     in_space ? ", 0.0" : "", in_space ? R"("x", "y", "z", "rx", "ry", "rz")" : R"("x", "y", "rz")",
-                     material, in_space ? "[8e-10, 9e-10]\ntorsion = 1.4e-9" : "8e-10", beam);
-}
 const std::string modes = R"(
 [[analysis]]
 name = "modes"

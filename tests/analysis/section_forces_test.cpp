@@ -1,6 +1,7 @@
 #include <rubato/core/error.hpp>
 
 #include <support/mechanism_study.hpp>
+#include <support/steel_strip.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,45 +15,11 @@ namespace {
 
 using testing::MechanismStudy;
 
-/// A steel strip of 1 m from the origin along x, clamped there, with the load under which it bends by a millimetre.
-std::string strip(bool in_space, const std::string& loads, const std::string& keys) {
-  return fmt::format(R"(
-[[node]]
-name = "a"
-position = [0.0, 0.0{0}]
-[[node]]
-name = "b"
-position = [1.0, 0.0{0}]
-[[support]]
-node = "a"
-fix = [{1}]
-[[material]]
-name = "steel"
-young = 2.1e11
-poisson = 0.3
-density = 7800.0
-[[section]]
-name = "strip"
-area = 1e-4
-inertia = {2}
-shear_factor = 0.83
-[[beam]]
-name = "arm"
-nodes = ["a", "b"]
-section = "strip"
-material = "steel"
-formulation = "geometrically_exact"
-elements = 4
-{5}
-{3}
-[[analysis]]
-name = "bent"
-type = "static"
-{4}
-)",
-                     in_space ? ", 0.0" : "", in_space ? R"("x", "y", "z", "rx", "ry", "rz")" : R"("x", "y", "rz")",
-                     in_space ? "[8e-10, 9e-10]\ntorsion = 1.4e-9" : "8e-10", loads, keys,
-                     in_space ? "orientation = [0.0, 1.0, 0.0]" : "");
+/// The strip in equilibrium under a load that bends it by a millimetre, y of its section along y.
+std::string bent_strip(bool in_space, const std::string& loads, const std::string& keys) {
+  const std::string beam = "formulation = \"geometrically_exact\"\nelements = 4\n";
+  return testing::strip(in_space ? beam + "orientation = [0.0, 1.0, 0.0]" : beam, "", in_space) + loads +
+         "[[analysis]]\nname = \"bent\"\ntype = \"static\"\n" + keys + "\n";
 }
 std::string force(const std::string& on, double value) {
   return fmt::format("[[force]]\non = \"{}\"\nexpression = \"{}\"\n", on, value);
@@ -62,7 +29,7 @@ std::string force(const std::string& on, double value) {
 constexpr double bent = 1e-5;
 
 TEST(SectionForces, OfACantileverInThePlaneGrowTowardsItsClamp) {
-  const MechanismStudy ran(strip(false, force("b.y", 0.5) + force("b.x", 20.0), "section_forces = true"));
+  const MechanismStudy ran(bent_strip(false, force("b.y", 0.5) + force("b.x", 20.0), "section_forces = true"));
   ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
   for (int i = 1; i <= 4; ++i) {
     const std::string part = fmt::format("arm({})", i);
@@ -82,8 +49,8 @@ TEST(SectionForces, OfACantileverInThePlaneGrowTowardsItsClamp) {
 }
 
 TEST(SectionForces, OfACantileverInSpaceAreInTheAxesOfItsSection) {
-  const MechanismStudy ran(strip(true, force("b.y", 0.3) + force("b.z", 0.5) + force("b.rx", 0.02),
-                                 "section_forces = [\"arm\"]\nobserve = \"b.z\""));
+  const MechanismStudy ran(bent_strip(true, force("b.y", 0.3) + force("b.z", 0.5) + force("b.rx", 0.02),
+                                      "section_forces = [\"arm\"]\nobserve = \"b.z\""));
   ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
   const double turned = 0.02 * 1.0 / (2.1e11 / 2.6 * 1.4e-9);  // at most: the section's axes turn by the torsion
   for (int i = 1; i <= 4; ++i) {
@@ -152,7 +119,7 @@ section_forces = true
 
 TEST(SectionForces, AreRefusedWhereThereIsNoSuchBeam) {
   try {
-    const MechanismStudy ran(strip(false, "", "section_forces = [\"arn\"]"));
+    const MechanismStudy ran(bent_strip(false, "", "section_forces = [\"arn\"]"));
     ADD_FAILURE() << "not refused";
   } catch (const InvalidInput& error) {
     EXPECT_EQ(error.where().line, 33) << error.what();
