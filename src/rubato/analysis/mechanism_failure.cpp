@@ -152,14 +152,15 @@ std::string failure_of(const integrate::MarchReport& report, const system::Mecha
       if (transitions.chattering >= 0) {
         what = chattering_part(transitions.chattering, mechanism) + " changed a hundred times, and nothing moved";
         const bool is_lock = static_cast<std::size_t>(transitions.chattering) < mechanism.model().locks.size();
-        remedy =
-            is_lock
-                ? "what is elastic rattles on a rigid stop: give the material of its beams a retardation_time [s], the "
-                  "lock a stiffness and damping, or take a method that damps more, { name = \"generalized_alpha\", "
-                  "rho_inf = 0.3 }"
-                : "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, "
-                  "or take \"friction\" in its place), for a load that jumps as the joint begins to move, and for "
-                  "more than six dry joints at rest, of which some follow reactions (take a preload for these)";
+        const bool has_beams = !mechanism.model().beam_parts.empty();
+        remedy = is_lock
+                     ? fmt::format(
+                           "what is elastic rattles on a rigid stop: give {}the lock a stiffness and damping, or take "
+                           "a method that damps more, {{ name = \"generalized_alpha\", rho_inf = 0.3 }}",
+                           has_beams ? "the material of the beams a retardation_time [s], " : "")
+                     : "look for a law that jumps where the rate of the joint changes its sign (give it a slope there, "
+                       "or take \"friction\" in its place), for a load that jumps as the joint begins to move, and for "
+                       "more than six dry joints at rest, of which some follow reactions (take a preload for these)";
         break;
       }
       what = "no velocities and accelerations were found that the joints and locks allow from then on";

@@ -17,11 +17,17 @@ namespace {
 
 constexpr Index default_count = 20, largest = 3000;
 
+constexpr double slow = 1e-6;  // [rad/s] or [m/s]: what moves no faster stands
+
+double largest_speed(const system::State& state, Index& place) {
+  return state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff(&place) : 0.0;
+}
+
 /// The configuration given, held still; that its loads would move it is told.
 system::State at_rest(const system::State& start, const system::Mechanism& mechanism,
                       std::vector<std::string>& warnings) {
   system::State state = start;
-  const bool moves = mechanism.size() > 0 && start.v.cwiseAbs().maxCoeff() > 1e-6;
+  Index fastest = 0;
   system::MechanismEquations equations(mechanism);
   if (!integrate::find_acceleration_at_rest(equations, state, model::Side::right)) return start;
   Vector force(mechanism.size()), gap(mechanism.constraint_count()), product(mechanism.size());
@@ -36,16 +42,15 @@ system::State at_rest(const system::State& start, const system::Mechanism& mecha
         fmt::format("the configuration is no equilibrium: \"{}\" accelerates by {:.4g} {}{}",
                     mechanism.coordinates()[static_cast<std::size_t>(place)], most,
                     mechanism.model().is_rotation[static_cast<std::size_t>(place)] != 0 ? "rad/s2" : "m/s2",
-                    moves ? "" : "; about = \"static\" finds one"));
+                    largest_speed(start, fastest) > slow ? "" : "; about = \"static\" finds one"));
   return state;
 }
 
 /// What is held still where it moves has other modes than it has in motion.
 void warn_of_motion(const system::State& state, const system::Mechanism& mechanism,
                     std::vector<std::string>& warnings) {
-  constexpr double slow = 1e-6;
   Index place = 0;
-  const double most = state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff(&place) : 0.0;
+  const double most = largest_speed(state, place);
   if (!(most > slow)) return;
   warnings.push_back(
       fmt::format("it moves there, \"{}\" by {:.4g} {}, and is held still: what its speed adds, centrifugal and "

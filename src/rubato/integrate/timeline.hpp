@@ -15,7 +15,7 @@ struct Crossing {
 
 /// Where in a step transitions are looked for.
 enum class Look {
-  between,  ///< in its middle too, by interpolation, where guards have no rate
+  between,  ///< between its ends too, by interpolation
   at_ends
 };
 
