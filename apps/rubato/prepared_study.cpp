@@ -77,11 +77,12 @@ double PreparedStudy::expected_bytes() const {
 
 PreparedStudy prepare(const StudyOptions& options) {
   const numerics::Parameters overrides = overrides_of(options.set);
-  model::StudyDescription study = io::read_study(options.study);
+  io::SourceFiles files;
+  model::StudyDescription study = io::read_study(options.study, &files);
   const numerics::Parameters parameters = model::evaluate_parameters(study.parameters, overrides);
   const auto analyses = chosen(study, options.only);
   PreparedStudy prepared{
-      study, overrides, parameters, analyses, {}, assembled(study, parameters), mechanism_of(study, parameters)};
+      study, files, overrides, parameters, analyses, {}, assembled(study, parameters), mechanism_of(study, parameters)};
   for (const auto& analysis : analyses)
     prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
   return prepared;

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/io/source_files.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -18,6 +19,7 @@ namespace rubato::app {
 /// A study read, evaluated, assembled and found possible, with the analyses that are asked for.
 struct PreparedStudy {
   model::StudyDescription description;
+  io::SourceFiles files;  ///< that the study names
   numerics::Parameters overrides, parameters;
   std::vector<model::AnalysisDescription> analyses;
   std::vector<analysis::AnalysisOutline> outlines;     ///< of each analysis

@@ -67,10 +67,15 @@ Journals open_journals(const PreparedStudy& study, const RunOptions& options, co
   for (std::size_t i = 0; i < journals.size(); ++i) {
     const auto& task = study.analyses[i];
     if (study.outlines[i].points == 0.0) continue;
-    const auto fingerprint = io::fingerprint_of(study.description, study.overrides, task.name);
+    const auto fingerprint = io::fingerprint_of(study.description, study.files, study.overrides, task.name);
     journals[i] = std::make_unique<io::JournalFile>(folder / (task.name + ".resume"), fingerprint, options.resume);
   }
   return journals;
+}
+
+void tell_of_damage(const Journals& journals) {
+  for (const auto& journal : journals)
+    if (journal && !journal->damage().empty()) tell("warning: --resume: " + journal->damage());
 }
 
 /// Tells which analyses begin anew, which --resume does not say: only sweeps go on where they stopped.
@@ -237,6 +242,7 @@ int run(const RunOptions& options) {
   try {
     io::prepare_output_folder(folder, study.expected_bytes());
     const Journals journals = open_journals(study, options, folder);
+    tell_of_damage(journals);
     if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
                                                   study.description.text, options.command, io::utc_now()});

@@ -2,6 +2,7 @@
 import csv
 import os
 import pathlib
+import random
 import shutil
 import signal
 import subprocess
@@ -114,14 +115,86 @@ class Sweep(unittest.TestCase):
             self.assertEqual(self.bytes_of("out"), self.bytes_of("whole"))
             self.assertFalse(journal.exists())
 
+    def interrupted(self, folder):
+        """Begins a run and interrupts it once some pieces are in its journal, which is returned."""
+        process = subprocess.Popen([RUBATO, "run", "study.toml", "-o", folder, "-q", "--jobs", "1"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        journal, end = self.folder / folder / "frf.resume", time.monotonic() + 60
+        while not (journal.exists() and journal.stat().st_size > 100):
+            self.assertLess(time.monotonic(), end)
+            self.assertIsNone(process.poll(), "it was done before it could be interrupted")
+            time.sleep(0.002)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        return journal
+
+    def test_a_damaged_journal_gives_right_rows_or_a_word(self):
+        self.write(200, 60)
+        self.assertEqual(self.run_command("run", "study.toml", "-o", "whole", "-q").returncode, 0)
+        whole, sound = self.bytes_of("whole"), self.interrupted("out").read_bytes()
+        head = sound.index(b"\n") + 1
+        self.assertGreater(len(sound), head + 2000)
+        chance = random.Random(15)
+        cut = chance.randrange(head + 1, len(sound))
+        third = slice(head + (len(sound) - head) // 3, head + 2 * (len(sound) - head) // 3)
+        flipped = bytearray(sound)
+        flipped[chance.randrange(head, len(sound))] ^= 16
+        for damaged, told in ((sound[:cut], "cut short"), (sound + bytes(100_000), "is damaged"), (bytes(len(sound)), "--resume"),
+                              (sound[:cut] + bytes(len(sound) - cut), "; the "), (sound + sound[head:], "is damaged"),
+                              (sound[:third.start] + sound[third] + sound[third.start:], "; the "),
+                              (sound[:third.start] + sound[third.stop:], "; the "), (bytes(flipped), "; the ")):
+            (self.folder / "out/frf.resume").write_bytes(damaged)
+            result = self.run_command("run", "study.toml", "-o", "out", "--resume", "-q")
+            self.assertIn(told, result.stderr)
+            if result.returncode == 2:
+                self.assertRegex(result.stderr, "^error: --resume: out/frf.resume .*; run without --resume to begin afresh\n$")
+                continue
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertRegex(result.stderr, r"^warning: --resume: out/frf.resume: piece \d+ is (damaged|cut short); the \d+ "
+                                            r"before it are kept, and the rest \(\d+ bytes\) is computed again\n$")
+            self.assertEqual(self.bytes_of("out"), whole)
+
+    def test_refuses_to_resume_with_another_mesh(self):
+        (self.folder / "nodes.csv").write_text("name,x,y\n" + "".join(f"{i},{i},0\n" for i in range(4)))
+        (self.folder / "beams.csv").write_text("first,second\n0,1\n1,2\n2,3\n")
+        self.write(200, 60, ("[[analysis]]", """
+[nodes]
+file = "nodes.csv"
+[beams]
+file = "beams.csv"
+section = "tube"
+material = "clay"
+[[material]]
+name = "clay"
+young = 1.0
+poisson = 0.3
+density = 1.0
+[[section]]
+name = "tube"
+area = 1.0
+inertia = 1.0
+shear_factor = 0.5
+[[support]]
+node = "0"
+fix = ["x", "y", "rz"]
+[[analysis]]
+observe = "mass"
+"""))
+        self.interrupted("out")
+        (self.folder / "nodes.csv").write_text("name,x,y\n" + "".join(f"{i},{1.1 * i},0\n" for i in range(4)))
+        result = self.run_command("run", "study.toml", "-o", "out", "--resume", "-q")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("was left by another study, other files that it names", result.stderr)
+
     def test_refuses_to_resume_another_study(self):
         self.write(200, 2)
         (self.folder / "out").mkdir()
-        (self.folder / "out/frf.resume").write_text("rubato journal 1 0123456789abcdef\n")
+        (self.folder / "out/frf.resume").write_text("rubato journal 2 0123456789abcdef\n")
         result = self.run_command("run", "study.toml", "-o", "out", "--resume")
         self.assertEqual((result.returncode, result.stderr),
-                         (2, "error: --resume: out/frf.resume was left by another study, other values of --set or another "
-                             "version; run without --resume to begin afresh\n"))
+                         (2, "error: --resume: out/frf.resume was left by another study, other files that it names, other "
+                             "values of --set or another version; run without --resume to begin afresh\n"))
         self.assertFalse((self.folder / "out/results.nc").exists())
 
     def test_more_than_a_million_points_want_a_yes(self):

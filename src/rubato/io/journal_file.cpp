@@ -1,11 +1,13 @@
 #include <rubato/core/error.hpp>
 #include <rubato/core/version.hpp>
+#include <rubato/io/checksum.hpp>
 #include <rubato/io/journal_file.hpp>
 #include <rubato/io/output_folder.hpp>
 
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cassert>
@@ -15,30 +17,6 @@
 
 namespace rubato::io {
 namespace {
-
-/// FNV-1a, 64 bits (Fowler, Noll and Vo).
-class Digest {
- public:
-  void take(std::string_view bytes) {
-    for (const char c : bytes) value_ = (value_ ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    value_ = (value_ ^ 0xffu) * 0x100000001b3u;  // the end of a text
-  }
-  void take(double number) { take(std::string_view(reinterpret_cast<const char*>(&number), sizeof number)); }
-  void take(const std::vector<double>& numbers) {
-    take(std::string_view(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)));
-  }
-  void take(const model::MatrixDescription& matrix) {
-    for (const auto& entry : matrix.entries) {
-      take(static_cast<double>(entry.row));
-      take(static_cast<double>(entry.column));
-      take(entry.value);
-    }
-  }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
-};
 
 constexpr std::size_t flush_at = 1u << 20;
 
@@ -55,62 +33,64 @@ std::size_t read_at(int file, std::uintmax_t place, void* bytes, std::size_t siz
   return done;
 }
 
+std::uintmax_t size_of(int file) {
+  struct stat status {};
+  return ::fstat(file, &status) == 0 ? static_cast<std::uintmax_t>(status.st_size) : 0;
+}
+
+constexpr std::string_view format = "rubato journal 2 ", former_format = "rubato journal 1 ";
+
+/// What stands before the values of a piece.
+struct RecordHead {
+  std::uint64_t number = 0, count = 0, checksum = 0;
+};
+static_assert(sizeof(RecordHead) == 3 * sizeof(std::uint64_t));
+
+std::string why_refused(std::string_view found, std::string_view head) {
+  if (found.starts_with(former_format)) return "was left by an earlier Rubato, whose journals cannot be verified";
+  const bool is_journal =
+      found.size() == head.size() && found.starts_with(format) && found.back() == '\n' &&
+      found.substr(format.size(), found.size() - format.size() - 1).find_first_not_of("0123456789abcdef") ==
+          std::string_view::npos;
+  return is_journal ? "was left by another study, other files that it names, other values of --set or another version"
+                    : "does not begin as a journal does: it is damaged, or something else";
+}
+
 }  // namespace
 
-std::string fingerprint_of(const model::StudyDescription& study, const numerics::Parameters& overrides,
-                           const std::string& analysis) {
-  Digest digest;
-  digest.take(version);
-  digest.take(study.text);
-  digest.take(analysis);
+std::string fingerprint_of(const model::StudyDescription& study, const SourceFiles& files,
+                           const numerics::Parameters& overrides, const std::string& analysis) {
+  Checksum checksum;
+  checksum.take(std::string_view(version));
+  checksum.take(std::string_view(study.text));
+  checksum.take(std::string_view(analysis));
   for (const auto& [name, value] : overrides) {
-    digest.take(name);
-    digest.take(value);
+    checksum.take(std::string_view(name));
+    checksum.take(value);
   }
-  const auto take_law = [&](const model::TimeLawDescription& law) {
-    if (const auto* table = std::get_if<model::TableDescription>(&law)) {
-      digest.take(table->times);
-      digest.take(table->values);
-    }
-  };
-  for (const auto& force : study.model.forces) take_law(force.law);
-  for (const auto& joint : study.model.joints)
-    if (joint.motion) std::visit(take_law, joint.motion->law);
-  if (study.model.base_motion) take_law(study.model.base_motion->law);
-  if (study.model.matrices) {
-    digest.take(study.model.matrices->mass);
-    digest.take(study.model.matrices->stiffness);
-    if (study.model.matrices->damping) digest.take(*study.model.matrices->damping);
+  for (const SourceFile& file : files) {
+    checksum.take(std::string_view(file.name));
+    checksum.take(file.checksum);
   }
-  const auto take_cases = [&](const auto& task) {
-    if constexpr (requires { task.sweep; })
-      if (const auto* cases = std::get_if<model::CaseSweepDescription>(&task.sweep)) {
-        for (const auto& name : cases->names) digest.take(name);
-        digest.take(cases->values);
-      }
-  };
-  for (const auto& other : study.analyses) std::visit(take_cases, other.task);
-  return fmt::format("{:016x}", digest.value());
+  return fmt::format("{:016x}", checksum.value());
 }
 
 JournalFile::JournalFile(std::filesystem::path path, const std::string& fingerprint, bool resume)
-    : path_(std::move(path)) {
-  const std::string head = "rubato journal 1 " + fingerprint + "\n";
+    : path_(std::move(path)), fingerprint_(fingerprint) {
+  const std::string head = std::string(format) + fingerprint + "\n";
   errno = 0;
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | (resume ? 0 : O_TRUNC), 0666);
   if (file_ < 0) throw OutputError(write_failure(path_, errno));
   try {
     std::string found(head.size(), '\0');
     found.resize(resume ? read_at(file_, 0, found.data(), found.size()) : 0);
-    if (found.size() < head.size()) {
-      begin(head);
-    } else if (found != head) {
-      throw InvalidInput(
-          fmt::format("--resume: {} was left by another study, other values of --set or another version; "
-                      "run without --resume to begin afresh",
-                      path_.string()));
-    } else {
+    if (found == head) {
       find_pieces(head);
+    } else if (head.starts_with(found)) {  // empty, or its first line had no time to reach the disk
+      begin(head);
+    } else {
+      throw InvalidInput(fmt::format("--resume: {} {}; run without --resume to begin afresh", path_.string(),
+                                     why_refused(found, head)));
     }
   } catch (...) {
     ::close(file_);
@@ -134,39 +114,73 @@ void JournalFile::begin(const std::string& head) {
   read_at_ = end_;
 }
 
-// A piece is its number of values, the values, and the number again.
+std::uint64_t JournalFile::checksum(long number, std::span<const double> values) const {
+  Checksum checksum;
+  checksum.take(std::string_view(fingerprint_));
+  checksum.take(static_cast<std::uint64_t>(number));
+  checksum.take(static_cast<std::uint64_t>(values.size()));
+  checksum.take(values.data(), values.size_bytes());
+  return checksum.value();
+}
+
+/// What stands at a place of the file.
+struct JournalFile::Record {
+  enum class Kind { whole, cut_short, damaged, end } kind = Kind::end;
+  std::uintmax_t behind = 0;  ///< where the next one is
+};
+
+JournalFile::Record JournalFile::record_at(std::uintmax_t place, long number, std::vector<double>& values) const {
+  using Kind = Record::Kind;
+  RecordHead head;
+  const std::size_t found = read_at(file_, place, &head, sizeof head);
+  if (found < sizeof head) return {found == 0 ? Kind::end : Kind::cut_short};
+  const std::uintmax_t size = size_of(file_), begin = place + sizeof head;
+  if (head.number != static_cast<std::uint64_t>(number)) return {Kind::damaged};
+  // A count that was damaged looks like one that reaches beyond the end.
+  if (head.count > (size - begin) / sizeof(double)) return {Kind::cut_short};
+  values.resize(head.count);
+  if (read_at(file_, begin, values.data(), head.count * sizeof(double)) < head.count * sizeof(double))
+    return {Kind::cut_short};
+  if (head.checksum != checksum(number, values)) return {Kind::damaged};
+  return {Kind::whole, begin + head.count * sizeof(double)};
+}
+
+// Keeps the pieces up to the first that is not whole, and cuts the file there.
 void JournalFile::find_pieces(const std::string& head) {
   end_ = read_at_ = head.size();
+  std::vector<double> values;
+  Record record;
   for (;;) {
-    std::uint64_t count = 0, again = 0;
-    if (read_at(file_, end_, &count, sizeof count) < sizeof count) break;
-    if (count > std::uint64_t{1} << 40) break;
-    const std::uintmax_t behind = end_ + sizeof count + count * sizeof(double);
-    if (read_at(file_, behind, &again, sizeof again) < sizeof again || again != count) break;
-    end_ = behind + sizeof again;
+    record = record_at(end_, finished_, values);
+    if (record.kind != Record::Kind::whole) break;
+    end_ = record.behind;
     ++finished_;
   }
+  const std::uintmax_t size = size_of(file_);
+  if (record.kind != Record::Kind::end)
+    damage_ = fmt::format("{}: piece {} {}; the {} before it are kept, and the rest ({} bytes) is computed again",
+                          path_.string(), finished_ + 1,
+                          record.kind == Record::Kind::damaged ? "is damaged" : "is cut short", finished_, size - end_);
   if (::ftruncate(file_, static_cast<off_t>(end_)) != 0) throw OutputError(write_failure(path_, errno));
 }
 
 std::vector<double> JournalFile::read(long piece) {
   assert(piece == next_read_ && piece < finished_);
+  std::vector<double> values;
+  const Record record = record_at(read_at_, piece, values);
+  if (record.kind != Record::Kind::whole)
+    throw OutputError(fmt::format("{}: piece {} cannot be read back; has another program changed the file?",
+                                  path_.string(), piece + 1));
   ++next_read_;
-  std::uint64_t count = 0;
-  (void)read_at(file_, read_at_, &count, sizeof count);
-  std::vector<double> values(count);
-  if (read_at(file_, read_at_ + sizeof count, values.data(), count * sizeof(double)) < count * sizeof(double))
-    throw OutputError(fmt::format("{}: cannot be read back: {}", path_.string(), std::strerror(errno)));
-  read_at_ += 2 * sizeof count + count * sizeof(double);
+  read_at_ = record.behind;
   return values;
 }
 
 void JournalFile::keep(std::span<const double> values) {
-  const std::uint64_t count = values.size();
+  const RecordHead head{static_cast<std::uint64_t>(finished_), values.size(), checksum(finished_, values)};
   const auto add = [&](const void* bytes, std::size_t size) { buffer_.append(static_cast<const char*>(bytes), size); };
-  add(&count, sizeof count);
+  add(&head, sizeof head);
   add(values.data(), values.size_bytes());
-  add(&count, sizeof count);
   ++finished_;
   if (buffer_.size() > flush_at || timer_.is_due()) flush();
 }

@@ -1,26 +1,35 @@
 #pragma once
 
 #include <rubato/io/flush_timer.hpp>
+#include <rubato/io/source_files.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/results/journal.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
 namespace rubato::io {
 
-/// A number that changes with whatever may change the results of an analysis: the text of the study and of the files
-/// that it names, replaced parameters, the version of the program.
-std::string fingerprint_of(const model::StudyDescription& study, const numerics::Parameters& overrides,
-                           const std::string& analysis);
+/// A number that changes with whatever may change the results of an analysis: the text of the study, the contents of
+/// the files that it names, replaced parameters, the version of the program.
+std::string fingerprint_of(const model::StudyDescription& study, const SourceFiles& files,
+                           const numerics::Parameters& overrides, const std::string& analysis);
 
-/// The finished pieces of an analysis in a file: what was written reaches the disk at least once a second, and a piece
-/// that a killed process left half-written does not count.
+/// The finished pieces of an analysis in a file: what was written reaches the disk at least once a second.
+///
+/// A line names the format and the fingerprint. Records follow, a piece each:
+///
+///   number of the piece, number of its values, checksum     three whole numbers of 64 bits
+///   the values                                              numbers of 64 bits
+///
+/// in the order of bytes of the machine. The checksum is over fingerprint, number, count and values, so that a record
+/// is whole, in its place and of this journal, or it does not count. Neither does what follows a record that does not.
 class JournalFile final : public results::Journal {
  public:
   /// Opens the journal of an interrupted run, or begins a new one where there is none.
   /// @param resume  false: begins a new one in any case
-  /// Throws InvalidInput for a journal of another fingerprint, and OutputError.
+  /// Throws InvalidInput for a journal of another fingerprint or format, and OutputError.
   JournalFile(std::filesystem::path path, const std::string& fingerprint, bool resume);
   ~JournalFile() override;
   JournalFile(const JournalFile&) = delete;
@@ -32,12 +41,18 @@ class JournalFile final : public results::Journal {
   void flush();
   /// Removes the file: the analysis is done, and its results are safe.
   void remove();
+  /// What is wrong with the journal that was found, and how many pieces are kept of it; empty where nothing is.
+  const std::string& damage() const { return damage_; }
 
  private:
+  struct Record;
   void find_pieces(const std::string& head);
   void begin(const std::string& head);
+  Record record_at(std::uintmax_t place, long number, std::vector<double>& values) const;
+  std::uint64_t checksum(long number, std::span<const double> values) const;
 
   std::filesystem::path path_;
+  std::string fingerprint_, damage_;
   int file_ = -1;
   long finished_ = 0, next_read_ = 0;
   std::uintmax_t end_ = 0, read_at_ = 0;  ///< behind the last piece; the next to be read [bytes]

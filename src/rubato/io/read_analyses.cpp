@@ -182,7 +182,7 @@ ModesDescription read_modes(TomlReader& reader) {
 
 }  // namespace
 
-std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder) {
+std::vector<AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder) {
   const std::vector<std::string> known{"transient",          "method_study", "modes",
                                        "frequency_response", "damper_curve", "static"};
   std::vector<AnalysisDescription> analyses;

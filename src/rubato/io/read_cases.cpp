@@ -29,10 +29,9 @@ void take_header(const std::vector<std::string_view>& fields, const Location& he
 
 }  // namespace
 
-model::CaseSweepDescription read_cases(const std::string& file, const std::filesystem::path& folder,
-                                       const Location& where) {
-  const std::string text = read_text(folder / file, file, where, largest_list, "the list of cases");
-  const std::string place = file_in(folder, file);
+model::CaseSweepDescription read_cases(const std::string& file, const StudyFolder& folder, const Location& where) {
+  const std::string text = folder.read(file, where, largest_list, "the list of cases");
+  const std::string place = folder.place_of(file);
   refuse_binary(text, place, "a list of cases is a text: a header with names of parameters, and rows of numbers");
   model::CaseSweepDescription cases;
   cases.file = file;

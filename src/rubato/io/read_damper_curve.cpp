@@ -27,7 +27,7 @@ void read_frequency_range(TomlReader& reader, DamperCurveDescription& task) {
 
 }  // namespace
 
-DamperCurveDescription read_damper_curve(TomlReader& reader, const std::filesystem::path& folder) {
+DamperCurveDescription read_damper_curve(TomlReader& reader, const StudyFolder& folder) {
   DamperCurveDescription task;
   task.parameter = reader.text("parameter");
   task.parameter_where = reader.where("parameter");

@@ -26,7 +26,7 @@ void read_waveforms(TomlReader& reader, Task& task) {
 
 }  // namespace
 
-FrequencyResponseDescription read_frequency_response(TomlReader& reader, const std::filesystem::path& folder) {
+FrequencyResponseDescription read_frequency_response(TomlReader& reader, const StudyFolder& folder) {
   Task task;
   const std::string frequencies = frequency_key(reader);
   task.frequencies_in_hertz = frequencies == "frequency";

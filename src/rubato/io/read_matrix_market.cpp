@@ -76,10 +76,9 @@ void require_symmetric(const model::MatrixDescription& matrix, const std::string
 
 }  // namespace
 
-model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,
-                                            const Location& where) {
-  const std::string text = read_text(folder / file, file, where, largest_matrix, "the matrix");
-  const std::string place = file_in(folder, file);
+model::MatrixDescription read_matrix_market(const std::string& file, const StudyFolder& folder, const Location& where) {
+  const std::string text = folder.read(file, where, largest_matrix, "the matrix");
+  const std::string place = folder.place_of(file);
   refuse_binary(text, place, "a Matrix Market file is text");
   Lines lines(text);
   std::string_view line;

@@ -203,7 +203,7 @@ const std::vector<std::string> joint_types{"rigid",     "revolute",  "prismatic"
                                            "spherical", "universal", "planar",    "screw",    "strut"};
 
 /// A formula of t, or { table = "file.csv" }.
-DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& folder) {
+DriveDescription read_drive(TomlReader& reader, const StudyFolder& folder) {
   DriveDescription drive;
   drive.where = reader.where("drive");
   if (!reader.node("drive")->is_table()) {
@@ -221,7 +221,7 @@ DriveDescription read_drive(TomlReader& reader, const std::filesystem::path& fol
 }
 
 /// The law of the moment or force: a formula, or { table = "file.csv" } over the coordinate.
-void read_law(TomlReader& reader, const std::filesystem::path& folder, JointDescription& joint) {
+void read_law(TomlReader& reader, const StudyFolder& folder, JointDescription& joint) {
   const bool is_strut = joint.type == JointDescription::Type::strut;
   const bool slides = is_strut || joint.type == JointDescription::Type::prismatic;
   const std::string key = slides ? "force" : "moment";
@@ -239,7 +239,7 @@ void read_law(TomlReader& reader, const std::filesystem::path& folder, JointDesc
   inner->finish();
 }
 
-JointDescription read_joint(TomlReader& reader, std::size_t number, const std::filesystem::path& folder) {
+JointDescription read_joint(TomlReader& reader, std::size_t number, const StudyFolder& folder) {
   JointDescription joint;
   joint.name = reader.optional_text("name").value_or(fmt::format("joint{}", number));
   joint.where = reader.where("name");
@@ -291,7 +291,7 @@ JointDescription read_joint(TomlReader& reader, std::size_t number, const std::f
 
 }  // namespace
 
-void read_mechanism(TomlReader& root, const std::filesystem::path& folder, ModelDescription& model) {
+void read_mechanism(TomlReader& root, const StudyFolder& folder, ModelDescription& model) {
   for (const std::string& type : joint_types)
     root.note_elsewhere(type, fmt::format("write [[joint]] with type = \"{}\"", type));
   root.note_elsewhere("hinge", "write [[joint]] with type = \"revolute\"");

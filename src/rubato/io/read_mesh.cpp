@@ -60,10 +60,10 @@ class Columns {
 
 /// Calls with each row of the file that a table names.
 template <class Take>
-void for_each_row(TomlReader& reader, const std::filesystem::path& folder, Columns& columns, Take&& take) {
+void for_each_row(TomlReader& reader, const StudyFolder& folder, Columns& columns, Take&& take) {
   const std::string file = reader.text("file");
-  const std::string text = read_text(folder / file, file, reader.where("file"), largest_mesh, "the mesh");
-  const std::string place = file_in(folder, file);
+  const std::string text = folder.read(file, reader.where("file"), largest_mesh, "the mesh");
+  const std::string place = folder.place_of(file);
   refuse_binary(text, place, "a mesh is a text: a header with the names of the columns, and rows");
   std::size_t rows = 0;
   for_each_csv_row(text, place, [&](const Fields& fields, const Location& here) {
@@ -75,7 +75,7 @@ void for_each_row(TomlReader& reader, const std::filesystem::path& folder, Colum
   if (rows == 0) throw InvalidInput({place, 0, 0}, "the file has no rows; it needs a header and a row each");
 }
 
-void read_nodes(TomlReader& reader, const std::filesystem::path& folder, StructureDescription& structure) {
+void read_nodes(TomlReader& reader, const StudyFolder& folder, StructureDescription& structure) {
   const std::vector<std::string> names{"name", "x", "y", "z"};
   Columns columns(names, 3);
   for_each_row(reader, folder, columns, [&](const Fields& fields, const Location& here) {
@@ -88,7 +88,7 @@ void read_nodes(TomlReader& reader, const std::filesystem::path& folder, Structu
   });
 }
 
-void read_beams(TomlReader& reader, const std::filesystem::path& folder, StructureDescription& structure) {
+void read_beams(TomlReader& reader, const StudyFolder& folder, StructureDescription& structure) {
   BeamDescription common;
   common.section = reader.has("section") ? reader.name("section", &common.section_where) : "";
   common.material = reader.has("material") ? reader.name("material", &common.material_where) : "";
@@ -124,7 +124,7 @@ void read_beams(TomlReader& reader, const std::filesystem::path& folder, Structu
 
 }  // namespace
 
-void read_mesh(TomlReader& root, const std::filesystem::path& folder, StructureDescription& structure) {
+void read_mesh(TomlReader& root, const StudyFolder& folder, StructureDescription& structure) {
   if (auto reader = root.optional_table("nodes", "[nodes]")) {
     read_nodes(*reader, folder, structure);
     reader->finish();

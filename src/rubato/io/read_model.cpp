@@ -10,8 +10,7 @@ namespace {
 using namespace model;
 
 /// @param units  that the values of a table may have
-TimeLawDescription read_law(TomlReader& reader, const std::filesystem::path& folder,
-                            const std::vector<std::string>& units) {
+TimeLawDescription read_law(TomlReader& reader, const StudyFolder& folder, const std::vector<std::string>& units) {
   const bool has_amplitude = reader.has("amplitude"), has_expression = reader.has("expression"),
              has_table = reader.has("table");
   if (!has_amplitude && !has_expression && !has_table)
@@ -99,7 +98,7 @@ DampingDescription read_damping(TomlReader& root) {
   return damping;
 }
 
-std::optional<MatricesDescription> read_matrices(TomlReader& root, const std::filesystem::path& folder) {
+std::optional<MatricesDescription> read_matrices(TomlReader& root, const StudyFolder& folder) {
   auto reader = root.optional_table("matrices", "[matrices]");
   if (!reader) return std::nullopt;
   const auto matrix = [&](const std::string& key) {
@@ -119,7 +118,7 @@ std::optional<MatricesDescription> read_matrices(TomlReader& root, const std::fi
 }
 
 /// Held in static states by its value, or moving as a law says.
-void read_displacement(TomlReader& reader, const std::filesystem::path& folder, ModelDescription& model) {
+void read_displacement(TomlReader& reader, const StudyFolder& folder, ModelDescription& model) {
   Location where;
   const std::string on = reader.name("on", &where);
   reader.rename(fmt::format("the displacement of \"{}\"", on));
@@ -140,7 +139,7 @@ void read_displacement(TomlReader& reader, const std::filesystem::path& folder, 
   reader.finish();
 }
 
-std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const std::filesystem::path& folder) {
+std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const StudyFolder& folder) {
   auto reader = root.optional_table("base_motion", "[base_motion]");
   if (!reader) return std::nullopt;
   BaseMotionDescription motion;
@@ -160,7 +159,7 @@ std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const st
 
 }  // namespace
 
-ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder) {
+ModelDescription read_model(TomlReader& root, const StudyFolder& folder) {
   ModelDescription model;
   model.where = root.where();
   for (TomlReader& reader : root.tables("coordinate")) {

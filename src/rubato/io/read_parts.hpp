@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/io/study_folder.hpp>
 #include <rubato/io/toml_reader.hpp>
 
 #include <filesystem>
@@ -8,31 +9,31 @@
 namespace rubato::io {
 
 /// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
-model::ModelDescription read_model(TomlReader& root, const std::filesystem::path& folder);
+model::ModelDescription read_model(TomlReader& root, const StudyFolder& folder);
 
 /// [[node]], [[beam]] ... [[support]] and [gravity].
-void read_structure(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
+void read_structure(TomlReader& root, const StudyFolder& folder, model::ModelDescription& model);
 
 /// [[body]] and [[joint]].
-void read_mechanism(TomlReader& root, const std::filesystem::path& folder, model::ModelDescription& model);
+void read_mechanism(TomlReader& root, const StudyFolder& folder, model::ModelDescription& model);
 
 /// [nodes] and [beams], which name CSV files, added to those of the study.
-void read_mesh(TomlReader& root, const std::filesystem::path& folder, model::StructureDescription& structure);
+void read_mesh(TomlReader& root, const StudyFolder& folder, model::StructureDescription& structure);
 
 /// [[analysis]]
-std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::filesystem::path& folder);
+std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder);
 
 /// The keys of type = "frequency_response".
-model::FrequencyResponseDescription read_frequency_response(TomlReader& reader, const std::filesystem::path& folder);
+model::FrequencyResponseDescription read_frequency_response(TomlReader& reader, const StudyFolder& folder);
 
 /// The keys of type = "damper_curve".
-model::DamperCurveDescription read_damper_curve(TomlReader& reader, const std::filesystem::path& folder);
+model::DamperCurveDescription read_damper_curve(TomlReader& reader, const StudyFolder& folder);
 
 /// A list of numbers, or { from, to, points, spacing }.
 model::ValuesDescription to_values(TomlReader& reader, const toml::node& node, const std::string& key);
 
 /// `sweep`: a grid, a list of cases or random samples of parameters.
-model::SweepDescription read_sweep(TomlReader& reader, const std::filesystem::path& folder);
+model::SweepDescription read_sweep(TomlReader& reader, const StudyFolder& folder);
 
 /// "angular_frequency" or "frequency", whichever is there: exactly one must be.
 std::string frequency_key(TomlReader& reader);
@@ -44,8 +45,7 @@ model::MethodDescription to_method(TomlReader& reader, const toml::node& node, c
 std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReader& reader);
 
 /// A CSV file whose header names parameters and whose rows are numbers; `#` begins a comment.
-model::CaseSweepDescription read_cases(const std::string& file, const std::filesystem::path& folder,
-                                       const Location& where);
+model::CaseSweepDescription read_cases(const std::string& file, const StudyFolder& folder, const Location& where);
 
 /// What the first column of a table is.
 struct TableOver {
@@ -55,18 +55,14 @@ struct TableOver {
 
 /// A CSV file of two columns, time (or another) and value; a first line that is no number is a header; `#` begins a
 /// comment. Units in square brackets of the header must be that of the first column and one of `units`.
-model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
+model::TableDescription read_table(const std::string& file, const StudyFolder& folder, const Location& where,
                                    const std::vector<std::string>& units, const TableOver& over = {});
 
 /// A Matrix Market file: coordinate or array format, real or integer, general or symmetric; symmetric in value.
-model::MatrixDescription read_matrix_market(const std::string& file, const std::filesystem::path& folder,
-                                            const Location& where);
+model::MatrixDescription read_matrix_market(const std::string& file, const StudyFolder& folder, const Location& where);
 
 /// Throws InvalidInput, at the file, for a text that holds a zero byte; `expected` says what it should be.
 void refuse_binary(const std::string& text, const std::string& file, const std::string& expected);
-
-/// A file that a study names, for messages: where it lies, seen from where the study was named.
-std::string file_in(const std::filesystem::path& folder, const std::string& file);
 
 /// The text of a file. Throws InvalidInput at `where` if it cannot be read or is larger than `limit` [bytes];
 /// `remedy` says what to do then.

@@ -125,7 +125,7 @@ SupportDescription read_support(TomlReader& reader) {
 
 }  // namespace
 
-void read_structure(TomlReader& root, const std::filesystem::path& folder, ModelDescription& model) {
+void read_structure(TomlReader& root, const StudyFolder& folder, ModelDescription& model) {
   StructureDescription& structure = model.structure;
   for (TomlReader& reader : root.tables("node")) structure.nodes.push_back(read_node(reader));
   for (TomlReader& reader : root.tables("material")) structure.materials.push_back(read_material(reader));

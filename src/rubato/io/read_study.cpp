@@ -87,10 +87,6 @@ void refuse_binary(const std::string& text, const std::string& file, const std::
     throw InvalidInput({file, 0, 0}, fmt::format("the file is binary (byte {} is zero); {}", zero + 1, expected));
 }
 
-std::string file_in(const std::filesystem::path& folder, const std::string& file) {
-  return (folder / file).lexically_normal().string();
-}
-
 std::string read_text(const std::filesystem::path& path, const std::string& name, const Location& where,
                       std::uintmax_t limit, const std::string& what, const std::string& remedy) {
   namespace fs = std::filesystem;
@@ -117,7 +113,8 @@ std::string read_text(const std::filesystem::path& path, const std::string& name
 }
 
 model::StudyDescription read_study_text(const std::string& text, const std::string& name,
-                                        const std::filesystem::path& folder) {
+                                        const std::filesystem::path& path, SourceFiles* files) {
+  const StudyFolder folder(path, files);
   require_text(text, name);
   toml::table table;
   try {
@@ -140,11 +137,11 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   return study;
 }
 
-model::StudyDescription read_study(const std::filesystem::path& path) {
+model::StudyDescription read_study(const std::filesystem::path& path, SourceFiles* files) {
   const std::string name = path.string();
   const std::string text = read_text(path, name, {}, largest_study, "the study",
                                      "; give large models as [matrices] and long loads as tables");
-  return read_study_text(text, name, path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+  return read_study_text(text, name, path.has_parent_path() ? path.parent_path() : std::filesystem::path("."), files);
 }
 
 }  // namespace rubato::io

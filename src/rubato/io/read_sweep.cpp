@@ -98,7 +98,7 @@ RandomSweepDescription read_random_sweep(TomlReader& reader) {
 
 }  // namespace
 
-SweepDescription read_sweep(TomlReader& reader, const std::filesystem::path& folder) {
+SweepDescription read_sweep(TomlReader& reader, const StudyFolder& folder) {
   auto sweep = reader.optional_table("sweep", reader.what() + ": sweep");
   if (!sweep) return std::monostate{};
   const toml::table& table = *reader.node("sweep")->as_table();

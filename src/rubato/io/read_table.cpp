@@ -60,10 +60,10 @@ void require_unit(std::string_view head, const std::string& column, const std::v
 
 }  // namespace
 
-model::TableDescription read_table(const std::string& file, const std::filesystem::path& folder, const Location& where,
+model::TableDescription read_table(const std::string& file, const StudyFolder& folder, const Location& where,
                                    const std::vector<std::string>& units, const TableOver& over) {
-  std::string text = read_text(folder / file, file, where, largest_table, "the table");
-  const std::string place = file_in(folder, file);
+  std::string text = folder.read(file, where, largest_table, "the table");
+  const std::string place = folder.place_of(file);
   refuse_binary(text, place, fmt::format("a table is a text of two columns, {} and value", over.name));
   if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // spreadsheets write this mark
   model::TableDescription table;

@@ -282,7 +282,7 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   bool was_interrupted = false;
   const long known = context.journal ? std::min(context.journal->finished(), plan.sweep.lines()) : 0;
   for (long i = 0; i < known; ++i) {
-    const DamperLineResult result = DamperLineResult::unpacked(context.journal->read(i));
+    const DamperLineResult result = DamperLineResult::unpacked(i, layouts, context.journal->read(i));
     tables.write(result);
     progress.add(static_cast<long>(result.counts.total()));
   }

@@ -76,7 +76,7 @@ void DamperCurveCounts::add(const DamperCurveCounts& other) {
 }
 
 std::vector<double> DamperLineResult::packed() const {
-  std::vector<double> values;
+  std::vector<double> values{static_cast<double>(line)};
   counts.pack(values);
   values.insert(values.end(), {counts.solves, counts.unconverged_samples, counts.without_optimum, counts.at_ends.count,
                                counts.at_ends.first, counts.walks.count, counts.walks.first});
@@ -87,20 +87,22 @@ std::vector<double> DamperLineResult::packed() const {
   return values;
 }
 
-DamperLineResult DamperLineResult::unpacked(std::span<const double> values) {
+DamperLineResult DamperLineResult::unpacked(long line, const DamperCurveTables& tables,
+                                            std::span<const double> values) {
   DamperLineResult result;
-  std::size_t at = 0;
+  result.line = line;
+  PackedNumbers numbers(values);
+  numbers.expect(static_cast<double>(line));
   DamperCurveCounts& counts = result.counts;
-  counts.unpack(values, at);
+  counts.unpack(numbers);
   for (double* value : {&counts.solves, &counts.unconverged_samples, &counts.without_optimum, &counts.at_ends.count,
                         &counts.at_ends.first, &counts.walks.count, &counts.walks.first})
-    *value = values[at++];
-  for (auto* rows : {&result.main, &result.linear, &result.peaks, &result.optimum}) {
-    const auto size = static_cast<std::size_t>(values[at++]);
-    rows->assign(values.begin() + static_cast<std::ptrdiff_t>(at),
-                 values.begin() + static_cast<std::ptrdiff_t>(at + size));
-    at += size;
-  }
+    *value = numbers.next();
+  result.main = numbers.rows(tables.main().row_width());
+  result.linear = numbers.rows(tables.linear().row_width());
+  result.peaks = numbers.rows(tables.peaks().row_width());
+  result.optimum = numbers.rows(tables.optimum().row_width());
+  numbers.expect_end();
   return result;
 }
 
@@ -138,6 +140,7 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
 DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTables& tables, long line,
                              const std::vector<DamperValue>& values, DamperPeaks& family) {
   DamperLineResult result;
+  result.line = line;
   std::vector<double> keys(plan.sweep.names().size());
   plan.sweep.values(line, keys);
   PeakNumbers numbers(plan);

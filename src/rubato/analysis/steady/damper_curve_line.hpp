@@ -24,13 +24,14 @@ struct DamperCurveCounts : StatusCounts {
 
 /// The rows of one line of the sweep, table by table.
 struct DamperLineResult {
+  long line = 0;
   bool is_whole = true;  ///< false: interrupted, and the rows are those of the first values
   std::vector<double> main, linear, peaks, optimum;
   DamperCurveCounts counts;
 
-  /// As one list of numbers, and back, for the journal.
+  /// As one list of numbers, and back, for the journal. Throws InvalidInput for the list of another line.
   std::vector<double> packed() const;
-  static DamperLineResult unpacked(std::span<const double> values);
+  static DamperLineResult unpacked(long line, const DamperCurveTables& tables, std::span<const double> values);
 };
 
 /// What one value of the parameter has given.

@@ -193,7 +193,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
   for (long i = 0; i < known; ++i) {
     const auto piece = pieces.next();
     if (!piece) break;
-    const PieceResult result = PieceResult::unpacked(*piece, context.journal->read(i));
+    const PieceResult result = PieceResult::unpacked(*piece, layouts, context.journal->read(i));
     tables.write(result);
     progress.add(static_cast<long>(result.counts.total()));
   }

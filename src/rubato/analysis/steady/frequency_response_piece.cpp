@@ -18,29 +18,30 @@ void SweepCounts::add(const SweepCounts& other) {
 }
 
 std::vector<double> PieceResult::packed() const {
-  std::vector<double> values;
+  std::vector<double> values{static_cast<double>(piece.first_line), static_cast<double>(piece.lines),
+                             static_cast<double>(piece.first_step), static_cast<double>(piece.steps)};
   counts.pack(values);
-  values.insert(values.end(), {counts.iterations, static_cast<double>(main.size()), static_cast<double>(linear.size()),
-                               static_cast<double>(waveforms.size())});
-  for (const auto* rows : {&main, &linear, &waveforms}) values.insert(values.end(), rows->begin(), rows->end());
+  values.push_back(counts.iterations);
+  for (const auto* rows : {&main, &linear, &waveforms}) {
+    values.push_back(static_cast<double>(rows->size()));
+    values.insert(values.end(), rows->begin(), rows->end());
+  }
   return values;
 }
 
-PieceResult PieceResult::unpacked(const SweepPiece& piece, std::span<const double> values) {
+PieceResult PieceResult::unpacked(const SweepPiece& piece, const SweepTables& tables, std::span<const double> values) {
   PieceResult result;
   result.piece = piece;
-  std::size_t place = 0;
-  const auto next = [&] { return values[place++]; };
-  result.counts.unpack(values, place);
-  result.counts.iterations = next();
-  std::array<std::size_t, 3> sizes{};
-  for (std::size_t& size : sizes) size = static_cast<std::size_t>(next());
-  const std::array<std::vector<double>*, 3> tables{&result.main, &result.linear, &result.waveforms};
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(place);
-    tables[i]->assign(begin, begin + static_cast<std::ptrdiff_t>(sizes[i]));
-    place += sizes[i];
-  }
+  PackedNumbers numbers(values);
+  for (const double place : {static_cast<double>(piece.first_line), static_cast<double>(piece.lines),
+                             static_cast<double>(piece.first_step), static_cast<double>(piece.steps)})
+    numbers.expect(place);
+  result.counts.unpack(numbers);
+  result.counts.iterations = numbers.next();
+  result.main = numbers.rows(tables.main.width());
+  result.linear = numbers.rows(tables.linear.width());
+  result.waveforms = numbers.rows(tables.waveforms.width());
+  numbers.expect_end();
   return result;
 }
 

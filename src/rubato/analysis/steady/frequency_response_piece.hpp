@@ -27,6 +27,13 @@ struct SweepCounts : StatusCounts {
   void add(const SweepCounts& other);
 };
 
+/// The tables of a frequency response; they know where each number goes.
+struct SweepTables {
+  ResponseTable main;
+  LinearTable linear;
+  WaveformTable waveforms;
+};
+
 /// Rows of a piece, table by table, in the order of lines and steps.
 struct PieceResult {
   SweepPiece piece;
@@ -34,16 +41,9 @@ struct PieceResult {
   std::vector<double> main, linear, waveforms;
   SweepCounts counts;
 
-  /// As one list of numbers, and back, for the journal.
+  /// As one list of numbers, and back, for the journal. Throws InvalidInput for the list of another piece.
   std::vector<double> packed() const;
-  static PieceResult unpacked(const SweepPiece& piece, std::span<const double> values);
-};
-
-/// The tables of a frequency response; they know where each number goes.
-struct SweepTables {
-  ResponseTable main;
-  LinearTable linear;
-  WaveformTable waveforms;
+  static PieceResult unpacked(const SweepPiece& piece, const SweepTables& tables, std::span<const double> values);
 };
 
 /// Counts finished points over all threads and tells of them, from whichever thread is free to.

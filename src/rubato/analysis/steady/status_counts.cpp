@@ -54,10 +54,10 @@ void StatusCounts::pack(std::vector<double>& values) const {
   values.insert(values.end(), {negative_loads.count, negative_loads.first});
 }
 
-void StatusCounts::unpack(std::span<const double> values, std::size_t& at) {
+void StatusCounts::unpack(PackedNumbers& values) {
   const auto read = [&](Tally& tally) {
-    tally.count = values[at++];
-    tally.first = values[at++];
+    tally.count = values.next();
+    tally.first = values.next();
   };
   for (Tally& tally : by_status) read(tally);
   read(negative_loads);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <rubato/analysis/steady/packed_numbers.hpp>
 #include <rubato/integrate/steady/steady_solver.hpp>
 
 #include <array>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,9 +36,9 @@ struct StatusCounts {
   double total() const;
   void add(const StatusCounts& other);
 
-  /// Appends the numbers to a list, and reads them from `at` on, which is moved behind them.
+  /// Appends the numbers to a list, and reads them back.
   void pack(std::vector<double>& values) const;
-  void unpack(std::span<const double> values, std::size_t& at);
+  void unpack(PackedNumbers& values);
   /// Adds words and numbers of the statuses that occurred, converged ones in any case.
   void describe(std::vector<std::pair<std::string, std::string>>& statistics) const;
 };
