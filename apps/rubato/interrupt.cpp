@@ -26,6 +26,8 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
+void request_stop() { stop.store(true); }
+
 const std::atomic<bool>& stop_on_interrupt() {
   // The default action comes back with the first signal; calls that it meets (a write) go on.
   constexpr int once = static_cast<int>(SA_RESETHAND) | SA_RESTART;

@@ -11,4 +11,7 @@ namespace rubato::app {
 /// and SIGPIPE are ignored.
 const std::atomic<bool>& stop_on_interrupt();
 
+/// Raises the flag as the first of those signals does.
+void request_stop();
+
 }  // namespace rubato::app

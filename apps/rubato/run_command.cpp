@@ -1,3 +1,4 @@
+#include "folder_watch.hpp"
 #include "interrupt.hpp"
 #include "messages.hpp"
 #include "prepared_study.hpp"
@@ -5,6 +6,7 @@
 
 #include <rubato/analysis/mechanism_size.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/io/folder_lock.hpp>
 #include <rubato/io/journal_file.hpp>
 #include <rubato/io/output_folder.hpp>
 #include <rubato/io/tee_sink.hpp>
@@ -59,6 +61,22 @@ void require_size(const PreparedStudy& study, const RunOptions& options) {
   }
 }
 
+/// What a resumed run writes anew, or need not write: the tables of the interrupted run, and the pieces in its
+/// journals.
+double bytes_replaced(const PreparedStudy& study, const std::filesystem::path& folder) {
+  double bytes = 0.0;
+  std::error_code fault;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string(), first = name.substr(0, name.find('.'));
+    const bool is_of_study = std::any_of(study.analyses.begin(), study.analyses.end(),
+                                         [&](const auto& analysis) { return analysis.name == first; });
+    if (!is_of_study && name != "results.nc") continue;
+    const std::uintmax_t size = entry.file_size(fault);
+    if (!fault) bytes += static_cast<double>(size);
+  }
+  return bytes;
+}
+
 /// One journal an analysis that can resume, none for the others.
 using Journals = std::vector<std::unique_ptr<io::JournalFile>>;
 
@@ -97,11 +115,13 @@ void tell_what_begins_anew(const PreparedStudy& study, const Journals& journals)
 /// how many. What goes wrong with one is in its report, and those that have not begun are left.
 class Runner {
  public:
-  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink, const Journals& journals)
+  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink, const Journals& journals,
+         FolderWatch& watch)
       : study_(study),
         options_(options),
         sink_(sink),
         journals_(journals),
+        watch_(watch),
         stop_(stop_on_interrupt()),
         reports_(study.analyses.size()) {}
 
@@ -146,7 +166,7 @@ class Runner {
       for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
     for (const std::string& warning : report.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
-    const bool can_resume = report.status == RunStatus::interrupted && journals_[index];
+    const bool can_resume = report.status == RunStatus::interrupted && journals_[index] && watch_.loss().empty();
     if (report.status != RunStatus::done)
       tell(fmt::format("{}: analysis \"{}\" {}: {}{}", study_.description.file, task.name,
                        report.status == RunStatus::failed ? "failed" : "stopped", report.message,
@@ -158,6 +178,7 @@ class Runner {
   const RunOptions& options_;
   results::Sink& sink_;
   const Journals& journals_;
+  FolderWatch& watch_;
   const std::atomic<bool>& stop_;
   std::vector<std::optional<RunReport>> reports_;
   std::atomic<std::size_t> next_{0};
@@ -238,23 +259,38 @@ int run(const RunOptions& options) {
   require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
-  const std::vector<std::string> former = tables_in(folder);
+  std::vector<std::string> former;
+  std::optional<io::FolderLock> lock;
+  (void)stop_on_interrupt();  // from here on a file that may not grow is an error of its write
   try {
-    io::prepare_output_folder(folder, study.expected_bytes());
-    const Journals journals = open_journals(study, options, folder);
-    tell_of_damage(journals);
-    if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
+    io::make_output_folder(folder);
+    lock.emplace(folder);
+    if (!lock->warning().empty()) tell("warning: " + lock->warning());
+    former = tables_in(folder);
+    io::require_disk_space(folder, study.expected_bytes() - (options.resume ? bytes_replaced(study, folder) : 0.0));
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
                                                   study.description.text, options.command, io::utc_now()});
     for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);
+    const Journals journals = open_journals(study, options, folder);
+    tell_of_damage(journals);
+    if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
     io::CsvSink csv(folder);
     io::TeeSink sink({&netcdf, &csv});
-    status = conclude(study, Runner(study, options, sink, journals).run(), netcdf);
+    FolderWatch watch([&] {
+      const std::string loss = lock->loss();
+      return loss.empty() && !netcdf.is_there() ? "has lost its results.nc" : loss;
+    });
+    const auto reports = Runner(study, options, sink, journals, watch).run();
+    if (const std::string loss = watch.loss(); !loss.empty())
+      throw OutputError(fmt::format("{}: the folder {} while the run wrote into it; the run ends here, without results",
+                                    folder.string(), loss));
+    status = conclude(study, reports, netcdf);
     netcdf.close();
     for (const auto& journal : journals)
       if (journal && status == exit_done) journal->remove();
   } catch (const OutputError& fault) {
     tell(fmt::format("error: {}", fault.what()));
+    lock.reset();
     // HDF5 tries once more to write what it could not as the process ends, and crashes: leave without it.
     std::fflush(nullptr);
     std::_Exit(exit_failed);

@@ -369,13 +369,61 @@ duration = 1.0
         first = self.start(study)
         self.wait_for_rows()
         second = self.run_command("run", study, "-o", "out")
-        self.assertEqual(second.returncode, 3)
-        self.assertIn("error: out/results.nc: ", second.stderr)
+        self.assertEqual((second.returncode, second.stdout), (3, ""))
+        self.assertEqual(second.stderr, f"error: out: another run is writing here (process {first.pid}); wait for its end, or "
+                                        "choose another folder (-o DIR)\n")
         first.send_signal(signal.SIGINT)
         first.communicate(timeout=60)
         self.assertEqual(first.returncode, 130)
         rows = self.rows("out/long.csv")
         self.assertTrue(all(len(row) == len(rows[0]) for row in rows))
+        self.assertTrue((self.folder / "out/report.html").exists())
+        self.assertFalse((self.folder / "out/.rubato-lock").exists())
+        if NCDUMP:
+            self.assertIn(f"time = UNLIMITED ; // ({len(rows) - 1} currently)", self.dump("out/results.nc", "-h"))
+        short = self.write(LONG.replace("DURATION", "1.0"), "short.toml")
+        self.assertEqual(self.run_command("run", short, "-o", "out").returncode, 0)
+
+    def test_a_run_ends_soon_after_its_folder_is_deleted_moved_or_emptied(self):
+        study = self.write(LONG.replace("DURATION", "2e7"))
+        out = self.folder / "out"
+
+        def delete():
+            shutil.rmtree(out)
+
+        def move():
+            out.rename(self.folder / "elsewhere")
+
+        def empty():
+            for path in out.glob("[!.]*"):
+                path.unlink()
+
+        for harm, told in ((delete, "was deleted or moved"), (move, "was deleted or moved"), (empty, "has lost its results.nc")):
+            process = self.start(study)
+            self.wait_for_rows()
+            time.sleep(1.2)  # past the first second's flush
+            harm()
+            out_text, err = process.communicate(timeout=30)
+            self.assertEqual((process.returncode, out_text), (3, ""), err)
+            self.assertIn(f"error: out: the folder {told} while the run wrote into it; the run ends here, without results\n", err)
+            shutil.rmtree(out, ignore_errors=True)
+
+    def test_former_results_stay_until_the_new_run_can_write(self):
+        study = EXAMPLES / "single-mass" / "study.toml"
+        self.run_command("run", study, "-o", "out", "-q", "--only", "response")
+
+        def contents():
+            return {path.name: path.read_bytes() for path in (self.folder / "out").iterdir() if path.is_file()}
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
+
+        before = contents()
+        self.assertIn("results.nc", before)
+        result = self.run_command("run", study, "-o", "out", "--only", "response", preexec_fn=limit)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("File too large", result.stderr)
+        self.assertEqual(before, contents())
 
     def test_failed_mathematics_exits_with_3_and_keeps_the_rows(self):
         study = self.write(LONG.replace("DURATION", "5.0").replace("amplitude = 1.0\nangular_frequency = 2.0",

@@ -122,6 +122,25 @@ TEST_F(WriteCsv, AFileThatMayNotGrowKeepsItsWholeRowsAndSaysWhy) {
   EXPECT_THAT(written, EndsWith("\n" + line));
 }
 
+TEST_F(WriteCsv, AFormerTableStaysUntilRowsOfTheNewOneAreWritten) {
+  std::ofstream(folder_ / "response.csv") << "former";
+  CsvSink sink(folder_);
+  const double row[] = {0.5, 1, 2, 10, 20, -3};
+  {
+    const testing::FileSizeLimit limit(10);
+    const auto rows = sink.open(testing::transient_layout());
+    rows->append(row);
+    EXPECT_THROW(rows->flush(), OutputError);
+  }
+  EXPECT_EQ(text("response.csv"), "former");
+  const auto rows = sink.open(testing::transient_layout());
+  rows->append(row);
+  EXPECT_EQ(text("response.csv"), "former");
+  rows->flush();
+  EXPECT_THAT(text("response.csv"), EndsWith("\n0.5,1,10,2,20,-3\n"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "response.csv.partial"));
+}
+
 TEST_F(WriteCsv, AFullDiskIsCalledFull) {
   std::filesystem::create_symlink("/dev/full", folder_ / "response.csv");
   CsvSink sink(folder_);

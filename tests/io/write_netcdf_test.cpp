@@ -298,12 +298,34 @@ TEST_F(WriteNetcdf, ATeeSendsTheSameRowsToBothKindsOfFile) {
   EXPECT_EQ(Reader::attribute(file.group("/response"), NC_GLOBAL, "message"), "at t = 0.5 s");
 }
 
+TEST_F(WriteNetcdf, AFormerFileStaysUntilRowsOfTheNewOneAreWritten) {
+  std::ofstream(path()) << "former";
+  {
+    NetcdfSink sink(path(), provenance());
+    sink.expect("response");
+    EXPECT_THROW(sink.expect("-o"), OutputError);  // netCDF knows no such name
+  }
+  EXPECT_EQ(text("results.nc"), "former");
+  NetcdfSink sink(path(), provenance());
+  const auto rows = sink.open(testing::transient_layout());
+  rows->append(first_row);
+  EXPECT_EQ(text("results.nc"), "former");
+  EXPECT_TRUE(sink.is_there());
+  rows->flush();
+  EXPECT_NE(text("results.nc"), "former");
+  EXPECT_TRUE(sink.is_there());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "results.nc.partial"));
+  std::filesystem::remove(path());
+  EXPECT_FALSE(sink.is_there());
+}
+
 TEST_F(WriteNetcdf, AFolderWithoutRoomForTheResultsIsRefusedAtOnce) {
-  EXPECT_NO_THROW(prepare_output_folder(folder_ / "new" / "folder", 1000.0));
+  make_output_folder(folder_ / "new" / "folder");
+  EXPECT_NO_THROW(require_disk_space(folder_ / "new" / "folder", 1000.0));
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "new" / "folder"));
   const double available = static_cast<double>(std::filesystem::space(folder_).available);
   try {
-    prepare_output_folder(folder_, 2.0 * available + 1e9);
+    require_disk_space(folder_, 2.0 * available + 1e9);
     FAIL() << "twice the free space was accepted";
   } catch (const OutputError& fault) {
     EXPECT_THAT(fault.what(), HasSubstr("the results may take"));

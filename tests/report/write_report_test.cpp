@@ -69,7 +69,7 @@ TEST_F(WriteReport, KeepsTheNamesOfASubtableApartFromThoseOfItsParent) {
 }
 
 TEST_F(WriteReport, ReplacesAnOlderPage) {
-  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
+  io::NetcdfSink(folder_ / "results.nc", {}).close();
   std::ofstream(folder_ / "report.html") << "older";
   write_report(folder_ / "results.nc", folder_ / "report.html");
   EXPECT_THAT(text_of(folder_ / "report.html"), HasSubstr(R"("analyses":[)"));
@@ -87,7 +87,7 @@ TEST_F(WriteReport, NamesResultsThatCannotBeRead) {
 }
 
 TEST_F(WriteReport, SaysWhyThePageCannotBeWritten) {
-  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
+  io::NetcdfSink(folder_ / "results.nc", {}).close();
   try {
     write_report(folder_ / "results.nc", folder_ / "missing" / "report.html");
     FAIL() << "no error";
@@ -98,7 +98,7 @@ TEST_F(WriteReport, SaysWhyThePageCannotBeWritten) {
 
 TEST_F(WriteReport, KeepsTheOlderPageOnAFullDisk) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
-  { io::NetcdfSink sink(folder_ / "results.nc", {}); }
+  io::NetcdfSink(folder_ / "results.nc", {}).close();
   std::ofstream(folder_ / "report.html") << "older";
   std::filesystem::create_symlink("/dev/full", folder_ / "report.html.partial");
   EXPECT_THROW(write_report(folder_ / "results.nc", folder_ / "report.html"), OutputError);

@@ -6,6 +6,7 @@
 #include <netcdf.h>
 
 #include <cerrno>
+#include <cstdio>
 
 namespace rubato::io {
 namespace {
@@ -16,14 +17,23 @@ constexpr double closing_bytes = 256.0 * 1024;
 
 }  // namespace
 
-NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)) {
+NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(partial_name(path)), name_(std::move(path)) {
   errno = 0;
   check(nc_create(path_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_));
   is_open_ = true;
+  known_ = KnownFile(path_);
 }
 
 NetcdfFile::~NetcdfFile() {
   if (is_open_) nc_close(id_);
+  if (path_ == name_) return;
+  try {
+    if (has_data_ && !has_failed_) publish();
+  } catch (const OutputError&) {
+    // A destructor cannot say so; whoever needs to know has closed it.
+  }
+  std::error_code ignored;
+  if (path_ != name_) std::filesystem::remove(path_, ignored);
 }
 
 void NetcdfFile::check(int status) {
@@ -31,7 +41,7 @@ void NetcdfFile::check(int status) {
   has_failed_ = true;
   const int system_error = errno;
   // HDF5 hides the reason; the operating system's, where there is one, says more.
-  std::string message = write_failure(path_, system_error);
+  std::string message = write_failure(name_, system_error);
   if (system_error == 0) message += fmt::format(" ({})", nc_strerror(status));
   throw OutputError(message);
 }
@@ -52,9 +62,10 @@ void NetcdfFile::make_room(double bytes) {
     return has_disk_space(path_, pending_ + bytes) && may_grow(path_, pending_ + bytes + closing_bytes);
   };
   if (!fits() && pending_ > 0.0) sync();  // some of what is pending may be in the file already and counted twice
-  if (!has_disk_space(path_, pending_ + bytes)) throw OutputError(write_failure(path_, ENOSPC));
-  if (!may_grow(path_, pending_ + bytes + closing_bytes)) throw OutputError(write_failure(path_, EFBIG));
+  if (!has_disk_space(path_, pending_ + bytes)) throw OutputError(write_failure(name_, ENOSPC));
+  if (!may_grow(path_, pending_ + bytes + closing_bytes)) throw OutputError(write_failure(name_, EFBIG));
   pending_ += bytes;
+  has_data_ = true;
 }
 
 void NetcdfFile::sync() {
@@ -63,11 +74,24 @@ void NetcdfFile::sync() {
   pending_ = 0.0;
 }
 
+void NetcdfFile::publish() {
+  if (path_ == name_) return;
+  if (std::rename(path_.c_str(), name_.c_str()) != 0) throw OutputError(write_failure(name_, errno));
+  path_ = name_;
+  known_ = KnownFile(path_);
+}
+
+bool NetcdfFile::is_there() {
+  const std::lock_guard lock(mutex_);
+  return known_.is_there();
+}
+
 void NetcdfFile::close() {
   if (!is_open_) return;
   is_open_ = false;
   errno = 0;
   check(nc_close(id_));
+  publish();
 }
 
 }  // namespace rubato::io

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rubato/io/known_file.hpp>
+
 #include <cstddef>
 #include <filesystem>
 #include <mutex>
@@ -7,14 +9,16 @@
 
 namespace rubato::io {
 
-/// A netCDF-4 file open for writing.
+/// A netCDF-4 file open for writing. It is made under the name `FILE.partial` and takes its own with the first data
+/// that have reached the disk: until then a former file of this name stays as it is. (A name that leads to another
+/// place, as a link does, is written at once.)
 ///
 /// HDF5 survives no failed write: what it holds in memory cannot be brought to the file any more, which then cannot be
 /// read at all. So data that would not fit is refused before HDF5 sees it, and the file stays whole. Should a write
 /// fail all the same, the file takes no more, and the process should end without HDF5's last attempt (std::_Exit).
 class NetcdfFile {
  public:
-  /// Replaces a file of this name. Throws OutputError.
+  /// Throws OutputError.
   explicit NetcdfFile(std::filesystem::path path);
   ~NetcdfFile();
   NetcdfFile(const NetcdfFile&) = delete;
@@ -34,14 +38,19 @@ class NetcdfFile {
   void make_room(double bytes);
   /// Makes everything written so far readable on disk.
   void sync();
+  /// Takes its name, after a sync.
+  void publish();
+  /// Whether its name still leads to it.
+  bool is_there();
   void close();
 
  private:
-  std::filesystem::path path_;
+  std::filesystem::path path_, name_;  ///< where it is; where it goes
+  KnownFile known_;
   std::mutex mutex_;
   int id_ = 0;
   double pending_ = 0.0;  ///< bytes announced since the last sync: they may not be in the file yet
-  bool is_open_ = false, has_failed_ = false;
+  bool is_open_ = false, has_failed_ = false, has_data_ = false;
 };
 
 }  // namespace rubato::io

@@ -10,11 +10,18 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 
 namespace rubato::io {
 
 std::string utc_now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+std::filesystem::path partial_name(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  std::error_code fault;
+  const fs::file_status status = fs::symlink_status(file, fault);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return file;
+  return file.string() + ".partial";
+}
 
 std::string write_failure(const std::filesystem::path& file, int error_number) {
   std::error_code fault;
@@ -34,7 +41,7 @@ std::string size_text(double bytes) {
 
 }  // namespace
 
-void prepare_output_folder(const std::filesystem::path& folder, double expected_bytes) {
+void make_output_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::error_code fault;
   if (fs::exists(folder, fault) && !fs::is_directory(folder, fault))
@@ -44,18 +51,11 @@ void prepare_output_folder(const std::filesystem::path& folder, double expected_
   if (fault)
     throw InvalidInput(
         fmt::format("{}: the folder cannot be made: {}; choose another (-o DIR)", folder.string(), fault.message()));
-  const fs::path probe = folder / ".rubato-probe";
-  {
-    errno = 0;
-    std::ofstream stream(probe);
-    stream << "probe" << std::flush;
-    if (!stream.is_open())
-      throw InvalidInput(fmt::format("{}: nothing can be written there: {}; choose another (-o DIR)", folder.string(),
-                                     std::strerror(errno)));
-    if (!stream) throw OutputError(write_failure(probe, errno));
-  }
-  fs::remove(probe, fault);
-  const auto space = fs::space(folder, fault);
+}
+
+void require_disk_space(const std::filesystem::path& folder, double expected_bytes) {
+  std::error_code fault;
+  const auto space = std::filesystem::space(folder, fault);
   if (!fault && expected_bytes + disk_reserve > static_cast<double>(space.available))
     throw OutputError(fmt::format(
         "{}: the results may take {} and {} are free; observe less (observe = [...]), of a transient write fewer rows "

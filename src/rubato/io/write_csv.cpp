@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,12 @@ std::string title(const results::Block& block, std::size_t label) {
 
 class CsvWriter final : public results::RowWriter {
  public:
-  CsvWriter(std::filesystem::path path, const results::TableLayout& layout) : path_(std::move(path)) {
+  CsvWriter(std::filesystem::path path, const results::TableLayout& layout)
+      : path_(partial_name(path)), name_(std::move(path)) {
     order_columns(layout);
     errno = 0;
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file_ < 0) throw OutputError(write_failure(path_, errno));
+    if (file_ < 0) throw OutputError(write_failure(name_, errno));
     buffer_.reserve(buffer_size + (1u << 12));
     buffer_ = header_ + "\n";
     header_.clear();
@@ -46,6 +48,9 @@ class CsvWriter final : public results::RowWriter {
       // A destructor cannot say so; whoever needs to know has flushed.
     }
     ::close(file_);
+    if (path_ == name_) return;
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
   }
 
   void append(std::span<const double> row) override {
@@ -100,7 +105,7 @@ class CsvWriter final : public results::RowWriter {
   void write() {
     if (failed_ || buffer_.empty()) return;
     failed_ = true;
-    if (!has_disk_space(path_, static_cast<double>(buffer_.size()))) throw OutputError(write_failure(path_, ENOSPC));
+    if (!has_disk_space(path_, static_cast<double>(buffer_.size()))) throw OutputError(write_failure(name_, ENOSPC));
     std::size_t written = 0;
     while (written < buffer_.size()) {
       errno = 0;
@@ -111,18 +116,26 @@ class CsvWriter final : public results::RowWriter {
         const std::size_t row_end = buffer_.rfind('\n', written == 0 ? 0 : written - 1);
         const std::size_t whole = written == 0 || row_end == std::string::npos ? 0 : row_end + 1;
         (void)!::ftruncate(file_, static_cast<off_t>(size_ + whole));  // a device has no length; nothing is lost then
-        throw OutputError(write_failure(path_, reason));
+        if (path_ != name_ && whole > 0 && !std::filesystem::exists(name_)) publish();
+        throw OutputError(write_failure(name_, reason));
       }
       written += static_cast<std::size_t>(count);
     }
+    if (path_ != name_) publish();
     failed_ = false;
     size_ += buffer_.size();
     buffer_.clear();
   }
 
+  // A former table stays until the first rows of this one have been written.
+  void publish() {
+    if (std::rename(path_.c_str(), name_.c_str()) != 0) throw OutputError(write_failure(name_, errno));
+    path_ = name_;
+  }
+
   static constexpr std::size_t buffer_size = 1u << 16;
 
-  std::filesystem::path path_;
+  std::filesystem::path path_, name_;  // where it is; where it goes
   std::vector<results::Block> blocks_;
   std::vector<Column> columns_;
   std::string header_, buffer_;

@@ -53,6 +53,7 @@ class NetcdfWriter final : public results::RowWriter {
     if (is_refused_) return;
     const Lock lock(file_->mutex());
     file_->sync();
+    file_->publish();
   }
 
  private:
@@ -205,7 +206,10 @@ void NetcdfSink::conclude(const std::string& analysis, const std::string& status
   if (!message.empty()) file_->attribute(group, NC_GLOBAL, "message", message);
   for (const auto& [name, text] : attributes) file_->attribute(group, NC_GLOBAL, name, text);
   file_->sync();
+  file_->publish();
 }
+
+bool NetcdfSink::is_there() const { return file_->is_there(); }
 
 bool NetcdfSink::has_failed() const { return file_->has_failed(); }
 
