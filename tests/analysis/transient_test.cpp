@@ -304,5 +304,19 @@ TEST(Transient, WritesForceAndPenetrationOfStops) {
   EXPECT_EQ(events->second, "2");
 }
 
+TEST(Transient, WarnsOfAJumpOfALoadWithinAnEqualStep) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = SparseMatrix(1, 1);
+  parts.loads =
+      system::Loads({system::LoadTerm{{0}, {1.0}, model::TableLaw{{0.0, 0.53, 0.53, 2.0}, {1.0, 1.0, 0.0, 0.0}}}});
+  parts.coordinates = {"mass"};
+  const system::LocallyNonlinear system(std::move(parts));
+  EXPECT_TRUE(run(system, description("generalized_alpha", 0.01, 2.0)).report.warnings.empty());
+  const auto warnings = run(system, description("generalized_alpha", 0.1, 2.0)).report.warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("t = 0.53 s"), std::string::npos) << warnings[0];
+}
+
 }  // namespace
 }  // namespace rubato::analysis

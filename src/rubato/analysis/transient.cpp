@@ -3,6 +3,7 @@
 #include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
+#include <rubato/integrate/load_jumps.hpp>
 
 #include <fmt/format.h>
 
@@ -97,6 +98,14 @@ class TransientObserver final : public integrate::Observer {
   bool last_recorded_ = false;
 };
 
+std::string missed_jumps(const integrate::LoadJumps& jumps) {
+  return fmt::format(
+      "{} of a load {} within a step, the first at t = {:.9g} s: it is seen at the end of that step, an error of first "
+      "order; give a step that divides the times of jumps, or step = {{ tolerance = 1e-3 }}",
+      jumps.missed() == 1 ? "1 jump" : fmt::format("{} jumps", jumps.missed()), jumps.missed() == 1 ? "falls" : "fall",
+      jumps.first_missed());
+}
+
 std::string contact_name(Index contact, const system::LocallyNonlinear& system) {
   if (contact < 0) return "";
   const Index stop = contact - system.slider_count();
@@ -180,7 +189,9 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
       report = adaptive.march;
       run.statistics = statistics(adaptive, state.t);
     } else {
-      report = integrate::march(*stepper, state, plan.step, plan.duration, &observer);
+      integrate::LoadJumps jumps(system, state.t, plan.duration);
+      report = integrate::march(*stepper, state, plan.step, plan.duration, &observer, &jumps);
+      if (jumps.missed() > 0) run.warnings.push_back(missed_jumps(jumps));
       run.statistics = {{"steps", std::to_string(report.steps)},
                         {"factorisations", std::to_string(stepper->factorisations())}};
     }

@@ -4,6 +4,8 @@
 
 namespace rubato::integrate {
 
+class LoadJumps;
+
 /// Sees every accepted step, both ends.
 class Observer {
  public:
@@ -27,11 +29,14 @@ struct MarchReport {
 };
 
 /// The loop: equal steps from state.t to `end`, the last one shortened where the interval is no multiple of the step.
-/// The times are multiples of the step, not sums. Allocates nothing after the first step.
+/// The times are multiples of the step, not sums; one that is a jump of a load but for round-off is that jump.
+/// Allocates nothing after the first step.
 /// @param state     start; on return the last accepted state
 /// @param step      [s], > 0
 /// @param observer  may be null
-MarchReport march(Stepper& stepper, system::State& state, double step, double end, Observer* observer = nullptr);
+/// @param jumps     of the loads of a structure; null: none of them jumps
+MarchReport march(Stepper& stepper, system::State& state, double step, double end, Observer* observer = nullptr,
+                  LoadJumps* jumps = nullptr);
 
 /// Number of full steps in a length, and the rest (zero where it is round-off).
 struct StepCount {
