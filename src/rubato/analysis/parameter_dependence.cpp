@@ -1,4 +1,5 @@
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/model/load_laws.hpp>
 #include <rubato/numerics/bound_formula.hpp>
 
 #include <algorithm>
@@ -25,7 +26,11 @@ void visit_structure(const model::StructureDescription& structure, const Take& t
   const auto take_all = [&](const auto& quantities) {
     for (const auto& quantity : quantities) take(quantity);
   };
-  for (const auto& node : structure.nodes) take_all(node.position);
+  for (const auto& node : structure.nodes) {
+    take_all(node.position);
+    take_all(node.velocity);
+    take_all(node.angular_velocity);
+  }
   for (const auto& material : structure.materials) {
     take(material.young);
     if (material.poisson) take(*material.poisson);
@@ -78,17 +83,13 @@ void visit(const model::ModelDescription& model, const Take& take_any) {
     take(stop.stiffness);
     take(stop.damping);
   }
-  for (const auto& force : model.forces) visit_law(force.law, take_any);
-  for (const auto& force : model.distributed_forces) {
+  for (const auto& load : model::load_laws(model)) visit_law(*load.law, take_any);
+  for (const auto& force : model.distributed_forces)
     for (const auto& share : force.direction) take(share);
-    visit_law(force.law, take_any);
-  }
   if (model.gravity)
     for (const auto& component : model.gravity->acceleration) take(component);
-  if (model.base_motion) {
-    visit_law(model.base_motion->law, take_any);
+  if (model.base_motion)
     for (const auto& [name, value] : model.base_motion->direction) take(value);
-  }
 }
 
 }  // namespace
@@ -106,14 +107,12 @@ ParameterDependence::ParameterDependence(const model::StudyDescription& study, c
   visit(study.model, [&](const model::Quantity& quantity, Role role, bool of_time) {
     for (const std::size_t place : used(quantity, of_time)) role_uses_[static_cast<std::size_t>(role)][place] = true;
   });
-  const auto take_frequency = [&](const model::TimeLawDescription& law) {
-    const auto* harmonic = std::get_if<model::HarmonicDescription>(&law);
-    if (!harmonic) return;
+  for (const auto& load : model::load_laws(study.model)) {
+    const auto* harmonic = std::get_if<model::HarmonicDescription>(load.law);
+    if (!harmonic) continue;
     auto& uses = harmonic->frequency_in_hertz ? in_frequency_ : in_angular_frequency_;
     for (const std::size_t place : used(harmonic->angular_frequency)) uses[place] = true;
-  };
-  for (const auto& force : study.model.forces) take_frequency(force.law);
-  if (study.model.base_motion) take_frequency(study.model.base_motion->law);
+  }
 }
 
 std::vector<std::size_t> ParameterDependence::used(const model::Quantity& quantity, bool of_time) const {

@@ -11,8 +11,8 @@ namespace rubato::analysis {
 /// Which quantities of a model change when a parameter changes, directly or through parameters that depend on it.
 class ParameterDependence {
  public:
-  /// What a quantity is for: the matrices, the start and the stiffness of sliders; amplitude and phase of a load; its
-  /// frequency; the limits of sliders.
+  /// What a quantity is for: the matrices, the start, the stiffness of sliders, and where loads act (directions,
+  /// gravity); amplitude and phase of a load; its frequency; the limits of sliders.
   enum class Role { structure, load, frequency, limit };
 
   /// @param values  of all parameters, in the order of the study

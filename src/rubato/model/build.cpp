@@ -1,12 +1,12 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/load_laws.hpp>
 #include <rubato/model/model.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -376,8 +376,6 @@ class Builder {
     if (static_cast<Index>(model_.prescribed.size()) == model_.size())
       throw InvalidInput(description_.prescribed.empty() ? description_.where : description_.prescribed.front().where,
                          "every coordinate moves as a [[displacement]] says: nothing is left to compute");
-    std::sort(model_.prescribed.begin(), model_.prescribed.end(),
-              [](const Prescribed& a, const Prescribed& b) { return a.coordinate < b.coordinate; });
   }
 
   void take_gravity(const GravityDescription& gravity) {
@@ -399,14 +397,8 @@ class Builder {
   void take_base_motion(const BaseMotionDescription& description) {
     BaseMotion motion;
     motion.law = law(description.law, "[base_motion]");
-    if (auto* harmonic = std::get_if<HarmonicLaw>(&motion.law)) {
-      const double omega = harmonic->angular_frequency;
-      if (description.of == BaseMotionDescription::Of::displacement) harmonic->amplitude *= -omega * omega;
-      if (description.of == BaseMotionDescription::Of::velocity) {
-        harmonic->amplitude *= omega;
-        harmonic->phase += 0.5 * std::numbers::pi;
-      }
-    }
+    if (const auto* harmonic = std::get_if<HarmonicLaw>(&motion.law))
+      motion.law = derivative(*harmonic, acceleration_order(description.of));
     motion.direction = Vector::Ones(model_.size());
     if (!model_.structure.is_empty()) return take_direction_of_nodes(description, std::move(motion));
     if (!description.direction.empty()) {

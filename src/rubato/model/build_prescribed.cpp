@@ -1,9 +1,9 @@
 #include <rubato/model/build_parts.hpp>
+#include <rubato/model/load_laws.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace rubato::model {
 namespace {
@@ -16,9 +16,7 @@ struct Building {
 
   Prescribed operator()(const HarmonicDescription& harmonic) const {
     const auto law = std::get<HarmonicLaw>(build_time_law(harmonic, parameters, part));
-    const double a = law.amplitude, w = law.angular_frequency;
-    return {coordinate, law, HarmonicLaw{a * w, w, law.phase + 0.5 * std::numbers::pi},
-            HarmonicLaw{-a * w * w, w, law.phase}};
+    return {coordinate, law, derivative(law, 1), derivative(law, 2)};
   }
 
   Prescribed operator()(const TimeFormulaDescription& formula) const {

@@ -1,4 +1,5 @@
 #include <rubato/model/build_parts.hpp>
+#include <rubato/model/load_laws.hpp>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,8 @@ struct Building {
 
   TimeLaw operator()(const TimeFormulaDescription& formula) const {
     const std::string& text = formula.formula.expression;
+    if (is_constant(formula, parameters))
+      return HarmonicLaw{evaluate(Quantity(text), parameters, part + ": expression"), 0.0, 0.0};
     try {
       FormulaLaw law{numerics::Expression(text, parameters, true)};
       const double start = law.formula(0.0);

@@ -1,6 +1,7 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/assemble.hpp>
+#include <rubato/system/assembled_model.hpp>
 #include <rubato/system/eliminate_supports.hpp>
 
 #include <fmt/format.h>
@@ -165,23 +166,38 @@ Vector even_load(const model::Model& model, const model::DistributedForce& force
   return load;
 }
 
-Loads loads_of(const model::Model& model, const SparseMatrix& mass) {
-  std::vector<LoadTerm> terms;
-  for (const auto& force : model.forces) terms.push_back({{force.coordinate}, {1.0}, force.law});
-  for (const auto& force : model.distributed_forces) terms.push_back(term_of(even_load(model, force), force.law));
-  if (!model.gravity.isZero(0.0))
-    terms.push_back(term_of(inertia_of_nodes(model, model.gravity), model::HarmonicLaw{1.0, 0.0, 0.0}));
+/// What loads a model, but for the pull of supports that move. Laws are numbered as model::load_laws has them.
+std::vector<ModelLoad> loads_of(const model::Model& model, const SparseMatrix& mass) {
+  std::vector<ModelLoad> loads;
+  int law = 0;
+  for (const auto& force : model.forces) loads.push_back({{{force.coordinate}, {1.0}, force.law}, law++});
+  for (const auto& force : model.distributed_forces)
+    loads.push_back({term_of(even_load(model, force), force.law), law++});
   if (model.base_motion) {
     Vector inertia = mass * model.base_motion->direction;
     if (!model.structure.is_empty()) inertia += inertia_of_nodes(model, model.base_motion->translation);
-    terms.push_back(term_of(-inertia, model.base_motion->law));
+    loads.push_back({term_of(-inertia, model.base_motion->law), law++});
   }
+  if (!model.gravity.isZero(0.0))
+    loads.push_back({term_of(inertia_of_nodes(model, model.gravity), model::HarmonicLaw{1.0, 0.0, 0.0})});
+  return loads;
+}
+
+int laws_before_supports(const model::Model& model) {
+  return static_cast<int>(model.forces.size() + model.distributed_forces.size()) + (model.base_motion ? 1 : 0);
+}
+
+Loads joined(const std::vector<ModelLoad>& loads) {
+  std::vector<LoadTerm> terms;
+  for (const ModelLoad& load : loads) terms.push_back(load.term);
   return Loads(std::move(terms));
 }
 
 }  // namespace
 
-LocallyNonlinear assemble(const model::Model& model) {
+LocallyNonlinear assemble(const model::Model& model) { return assemble_with_loads(model).system; }
+
+AssembledModel assemble_with_loads(const model::Model& model) {
   const Index n = model.size();
   LocallyNonlinear::Parts parts;
   Triplets damping;
@@ -206,7 +222,7 @@ LocallyNonlinear assemble(const model::Model& model) {
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
   parts.sliders = model.sliders;
   parts.stops = model.stops;
-  parts.loads = loads_of(model, parts.mass);
+  std::vector<ModelLoad> loads = loads_of(model, parts.mass);
   parts.start.q = model.position;
   parts.start.v = model.velocity;
   parts.coordinates = model.coordinates;
@@ -214,8 +230,9 @@ LocallyNonlinear assemble(const model::Model& model) {
   parts.reference = model::reference_value(model.structure, model.mass);
   parts.held_forces = model.held_forces;
   parts.held_displacements = model.held_displacements;
-  if (!model.prescribed.empty()) eliminate_supports(parts, model.prescribed);
-  return LocallyNonlinear(std::move(parts));
+  if (!model.prescribed.empty()) eliminate_supports(parts, model.prescribed, laws_before_supports(model), loads);
+  parts.loads = joined(loads);
+  return {LocallyNonlinear(std::move(parts)), std::move(loads)};
 }
 
 }  // namespace rubato::system

@@ -54,33 +54,33 @@ SparseMatrix given_rows(const SparseMatrix& matrix, const Split& split) {
   });
 }
 
-/// Splits the rows of loads.
-std::pair<std::vector<LoadTerm>, std::vector<LoadTerm>> split_loads(const Loads& loads, const Split& split) {
-  std::pair<std::vector<LoadTerm>, std::vector<LoadTerm>> out;
-  for (const LoadTerm& term : loads.terms()) {
-    LoadTerm of_free{{}, {}, term.law, term.source}, of_given = of_free;
-    for (std::size_t i = 0; i < term.rows.size(); ++i) {
-      const bool is_free = split.is_free(term.rows[i]);
-      LoadTerm& to = is_free ? of_free : of_given;
-      to.rows.push_back(is_free ? split.among_free(term.rows[i]) : split.among_given(term.rows[i]));
-      to.weights.push_back(term.weights[i]);
+/// Keeps what loads the free coordinates; returns the terms on those that are given.
+std::vector<LoadTerm> split_loads(std::vector<ModelLoad>& loads, const Split& split) {
+  std::vector<LoadTerm> on_given;
+  for (ModelLoad& load : loads) {
+    LoadTerm of_free{{}, {}, load.term.law, load.term.source}, of_given = of_free;
+    for (std::size_t i = 0; i < load.term.rows.size(); ++i) {
+      const Index row = load.term.rows[i];
+      LoadTerm& to = split.is_free(row) ? of_free : of_given;
+      to.rows.push_back(split.is_free(row) ? split.among_free(row) : split.among_given(row));
+      to.weights.push_back(load.term.weights[i]);
     }
-    if (!of_free.rows.empty()) out.first.push_back(std::move(of_free));
-    if (!of_given.rows.empty()) out.second.push_back(std::move(of_given));
+    load.term = std::move(of_free);
+    if (!of_given.rows.empty()) on_given.push_back(std::move(of_given));
   }
-  return out;
+  std::erase_if(loads, [](const ModelLoad& load) { return load.term.rows.empty(); });
+  return on_given;
 }
 
 /// What a support that moves by a law pulls at the free coordinates.
-void add_pull(const SparseMatrix& matrix, const Split& split, Index coordinate, const model::TimeLaw& law,
-              LoadTerm::Source source, std::vector<LoadTerm>& terms) {
-  LoadTerm term{{}, {}, law, source};
+void add_pull(const SparseMatrix& matrix, const Split& split, Index coordinate, ModelLoad load,
+              std::vector<ModelLoad>& loads) {
   for (SparseMatrix::InnerIterator entry(matrix, coordinate); entry; ++entry) {
     if (!split.is_free(entry.row()) || entry.value() == 0.0) continue;
-    term.rows.push_back(split.among_free(entry.row()));
-    term.weights.push_back(-entry.value());
+    load.term.rows.push_back(split.among_free(entry.row()));
+    load.term.weights.push_back(-entry.value());
   }
-  if (!term.rows.empty()) terms.push_back(std::move(term));
+  if (!load.term.rows.empty()) loads.push_back(std::move(load));
 }
 
 Vector free_entries(const Vector& all, const Split& split) {
@@ -93,25 +93,28 @@ Vector free_entries(const Vector& all, const Split& split) {
 
 }  // namespace
 
-void eliminate_supports(LocallyNonlinear::Parts& parts, std::span<const model::Prescribed> motions) {
+void eliminate_supports(LocallyNonlinear::Parts& parts, std::span<const model::Prescribed> motions, int first_law,
+                        std::vector<ModelLoad>& loads) {
   const Split split(parts.mass.rows(), motions);
   const Index f = split.free(), p = split.given();
-  auto [on_free, on_given] = split_loads(parts.loads, split);
   MovingSupports::Parts supports;
-  supports.motions.assign(motions.begin(), motions.end());
+  supports.motions.resize(motions.size());
+  for (const auto& motion : motions)
+    supports.motions[static_cast<std::size_t>(split.among_given(motion.coordinate))] = motion;
   supports.mass = given_rows(parts.mass, split);
   supports.damping = given_rows(parts.damping, split);
   supports.stiffness = given_rows(parts.stiffness, split);
   supports.own_mass = supports.mass.rightCols(p);
   supports.own_stiffness = supports.stiffness.rightCols(p);
-  supports.loads = Loads(std::move(on_given));
+  supports.loads = Loads(split_loads(loads, split));
   using Source = LoadTerm::Source;
   for (const auto& motion : motions) {
-    add_pull(parts.stiffness, split, motion.coordinate, motion.displacement, Source::displaced_support, on_free);
-    add_pull(parts.damping, split, motion.coordinate, motion.velocity, Source::moving_support, on_free);
-    add_pull(parts.mass, split, motion.coordinate, motion.acceleration, Source::moving_support, on_free);
+    const Index at = motion.coordinate;
+    const int law = first_law + static_cast<int>(&motion - motions.data());
+    add_pull(parts.stiffness, split, at, {{{}, {}, motion.displacement, Source::displaced_support}, law, 0}, loads);
+    add_pull(parts.damping, split, at, {{{}, {}, motion.velocity, Source::moving_support}, law, 1}, loads);
+    add_pull(parts.mass, split, at, {{{}, {}, motion.acceleration, Source::moving_support}, law, 2}, loads);
   }
-  parts.loads = Loads(std::move(on_free));
   for (SparseMatrix* matrix : {&parts.mass, &parts.damping, &parts.stiffness}) *matrix = free_part(*matrix, split);
   const auto move_end = [&](Index& end) {
     if (end != ground) end = split.among_free(end);

@@ -114,7 +114,7 @@ void require_ends(const DamperCurvePlan& plan, const StudyInput& input, const st
           plan.sweep.values(line, {values.data(), values.size() - 1});
           values.back() = value;
           const double point = plan.excitation_factor * frequency;
-          const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
+          const system::AssembledModel structure = build_structure(input.study, at.parameters_at(values, point));
           integrate::Excitation excitation;
           at.take_line(values, structure);
           at.take_point(point, excitation);
@@ -127,7 +127,7 @@ void require_ends(const DamperCurvePlan& plan, const StudyInput& input, const st
 DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where, const Description& description,
                                   const StudyInput& input) {
   const std::string title = "analysis \"" + name + "\": ";
-  require_harmonic_loads(input.study.model, where, title);
+  require_harmonic_loads(input, where, title);
   Sweep sweep(description.sweep, place_or(description.sweep_where, where), input, title);
   const std::size_t parameter = curve_parameter(description, sweep, input, title, where);
   const Location parameter_where = place_or(description.parameter_where, where);

@@ -52,7 +52,7 @@ void DamperPeaks::require_structure(double point) {
   stuck_.reset();
   structure_.reset();
   structure_ =
-      std::make_unique<ParametricStructure>(build_structure(input_.study, drive_.parameters_at(values_, point)));
+      std::make_unique<system::AssembledModel>(build_structure(input_.study, drive_.parameters_at(values_, point)));
   solver_ = make_.response(structure_->system, plan_.request);
   natural_ = natural_frequencies(structure_->system);
   structure_values_ = std::move(wanted);

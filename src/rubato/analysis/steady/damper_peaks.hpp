@@ -66,7 +66,7 @@ class DamperPeaks final : public PeakFamily {
 
   ParametricExcitation drive_;
   std::vector<double> values_;  ///< of the swept parameters, and the curve's own
-  std::unique_ptr<ParametricStructure> structure_;
+  std::unique_ptr<system::AssembledModel> structure_;
   std::vector<double> structure_values_;  ///< what it was built with
   std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
   Vector natural_;  ///< natural frequencies of both limits [rad/s]

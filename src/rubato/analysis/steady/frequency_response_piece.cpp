@@ -86,7 +86,7 @@ void PieceSolver::require_structure(Lane& lane, double point) {
   free_.reset();
   stuck_.reset();
   structure_.reset();
-  structure_ = std::make_unique<ParametricStructure>(
+  structure_ = std::make_unique<system::AssembledModel>(
       build_structure(input_.study, lane.drive->parameters_at(lane.values, point)));
   solver_ = make_.response(structure_->system, plan_.request);
   structure_values_ = std::move(wanted);
@@ -120,7 +120,7 @@ void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitatio
 
 /// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
 void PieceSolver::march_without_period(Lane& lane, double point, integrate::SteadyResponse& response) {
-  const ParametricStructure here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
+  const system::AssembledModel here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
   response =
       integrate::solve_quasi_periodic(here.system, marching_options(plan_.route), plan_.request, lane.drive->window());
   response.harmonics.setConstant(static_cast<Index>(plan_.observed.size()),

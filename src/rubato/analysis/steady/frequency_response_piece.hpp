@@ -118,7 +118,7 @@ class PieceSolver {
   std::vector<Lane> lanes_;
   std::vector<integrate::Excitation> excitations_;
   std::vector<integrate::SteadyResponse> responses_;
-  std::unique_ptr<ParametricStructure> structure_;
+  std::unique_ptr<system::AssembledModel> structure_;
   std::vector<double> structure_values_;  ///< the structural parameters that it was built with
   std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
   integrate::SteadyResponse free_response_, stuck_response_;

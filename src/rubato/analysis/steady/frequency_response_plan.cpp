@@ -66,9 +66,11 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
                : description.start == Start::previous ? integrate::SteadyStart::previous
                                                       : integrate::SteadyStart::rest;
   if (description.start == Start::previous && plan.structure_follows_point)
-    throw InvalidInput(place(description.start_where, where),
-                       fmt::format("{}start = \"previous\" needs a structure that stays; here it changes with \"{}\"",
-                                   title, input.parameters[plan.excitation].first));
+    throw InvalidInput(
+        place(description.start_where, where),
+        fmt::format("{}start = \"previous\" needs a structure, gravity and directions of loads that stay; here "
+                    "they change with \"{}\"",
+                    title, input.parameters[plan.excitation].first));
   if (description.start == Start::rest && description.route == Description::Route::harmonic_balance)
     throw InvalidInput(place(description.start_where, where),
                        title +
@@ -167,7 +169,7 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const st
       possibility.attempt([&] {
         plan.sweep.values(line, values);
         const double point = plan.excitation_factor * frequency;
-        const ParametricStructure structure = build_structure(input.study, at.parameters_at(values, point));
+        const system::AssembledModel structure = build_structure(input.study, at.parameters_at(values, point));
         integrate::Excitation excitation;
         at.take_line(values, structure);
         at.take_point(point, excitation);
@@ -189,7 +191,7 @@ std::size_t FrequencyResponsePlan::steps_a_piece() const {
 FrequencyResponsePlan plan_frequency_response(const std::string& name, const Location& where,
                                               const Description& description, const StudyInput& input) {
   const std::string title = "analysis \"" + name + "\": ";
-  require_harmonic_loads(input.study.model, where, title);
+  require_harmonic_loads(input, where, title);
   Sweep sweep(description.sweep, place(description.sweep_where, where), input, title);
   const std::size_t excitation = excitation_parameter({description.excitation, description.excitation_where},
                                                       {sweep.places(), sweep.where()}, input, title, where);

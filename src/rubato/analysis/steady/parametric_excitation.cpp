@@ -1,6 +1,6 @@
 #include <rubato/analysis/steady/parametric_excitation.hpp>
+#include <rubato/integrate/steady/add_load.hpp>
 #include <rubato/model/model.hpp>
-#include <rubato/system/assemble.hpp>
 
 #include <fmt/format.h>
 
@@ -10,12 +10,8 @@
 
 namespace rubato::analysis {
 
-ParametricStructure build_structure(const model::StudyDescription& study, const numerics::Parameters& values) {
-  const model::Model model = model::build(study.model, values, model::NegativeLoad::zero);
-  ParametricStructure structure{system::assemble(model), {}, {}};
-  for (const auto& force : model.forces) structure.force_rows.push_back(force.coordinate);
-  if (model.base_motion) structure.inertia = structure.system.mass() * model.base_motion->direction;
-  return structure;
+system::AssembledModel build_structure(const model::StudyDescription& study, const numerics::Parameters& values) {
+  return system::assemble_with_loads(model::build(study.model, values, model::NegativeLoad::zero));
 }
 
 ParametricExcitation::ParametricExcitation(const StudyInput& input, const ParameterDependence& dependence,
@@ -34,17 +30,8 @@ ParametricExcitation::ParametricExcitation(const StudyInput& input, const Parame
     formulas_.emplace_back(i,
                            numerics::BoundFormula(input.study.parameters[i].value.expression, before, values_.data()));
   }
-  const auto& model = input.study.model;
-  for (std::size_t i = 0; i < model.forces.size(); ++i) {
-    const std::string part = fmt::format("the force on \"{}\"", model.forces[i].on);
-    loads_.push_back(load_of(std::get<model::HarmonicDescription>(model.forces[i].law), part));
-    loads_.back().force = i;
-  }
-  if (model.base_motion) {
-    loads_.push_back(load_of(std::get<model::HarmonicDescription>(model.base_motion->law), "[base_motion]"));
-    loads_.back().base = model.base_motion->of;
-  }
-  for (const auto& slider : model.sliders)
+  for (const auto& law : model::load_laws(input.study.model)) laws_.push_back(law_of(law));
+  for (const auto& slider : input.study.model.sliders)
     limits_.push_back({value_of(slider.friction_coefficient), value_of(slider.normal_load),
                        fmt::format("slider \"{}\"", slider.name)});
 }
@@ -59,20 +46,27 @@ ParametricExcitation::Value ParametricExcitation::value_of(const model::Quantity
   return value;
 }
 
-ParametricExcitation::Load ParametricExcitation::load_of(const model::HarmonicDescription& law,
-                                                         const std::string& part) {
-  Load load;
-  load.amplitude = value_of(law.amplitude);
-  load.frequency = value_of(law.angular_frequency);
-  load.phase = value_of(law.phase);
-  load.frequency_factor = law.frequency_in_hertz ? 2.0 * std::numbers::pi : 1.0;
-  load.part = part;
-  return load;
+ParametricExcitation::Law ParametricExcitation::law_of(const model::LoadLaw& description) {
+  Law law;
+  law.derivative = description.derivative;
+  law.part = description.part;
+  if (const auto* harmonic = std::get_if<model::HarmonicDescription>(description.law)) {
+    law.amplitude = value_of(harmonic->amplitude);
+    law.frequency = value_of(harmonic->angular_frequency);
+    law.phase = value_of(harmonic->phase);
+    law.frequency_factor = harmonic->frequency_in_hertz ? 2.0 * std::numbers::pi : 1.0;
+  } else {  // a formula without t: the plan has refused all others
+    law.amplitude = value_of(std::get<model::TimeFormulaDescription>(*description.law).formula);
+  }
+  return law;
 }
 
-void ParametricExcitation::take_line(std::span<const double> values, const ParametricStructure& structure) {
+void ParametricExcitation::take_line(std::span<const double> values, const system::AssembledModel& structure) {
   for (std::size_t i = 0; i < line_.size(); ++i) values_[line_[i]] = values[i];
   structure_ = &structure;
+  for (Law& law : laws_) law.scales = law.derivative > 0;
+  for (const auto& load : structure.loads)
+    if (load.derivative > 0) laws_[static_cast<std::size_t>(load.law)].scales = true;
   is_new_line_ = true;
 }
 
@@ -108,96 +102,74 @@ void ParametricExcitation::refresh_parameters() {
 }
 
 // Returns whether amplitudes have changed.
-bool ParametricExcitation::refresh_loads() {
+bool ParametricExcitation::refresh_laws() {
   bool has_changed = is_new_line_;
-  for (Load& load : loads_) {
-    evaluate(load.amplitude, load.part, "amplitude");
-    evaluate(load.phase, load.part, "phase");
-    evaluate(load.frequency, load.part, load.frequency_factor == 1.0 ? "angular_frequency" : "frequency");
-    load.angular_frequency = load.frequency_factor * load.frequency.now;
-    if (!(load.angular_frequency >= 0.0))
-      throw InvalidInput(load.frequency.quantity->where,
-                         fmt::format("{}: its frequency must not be negative, got {}", load.part, load.frequency.now));
-    const bool scales = load.base && *load.base != model::BaseMotionDescription::Of::acceleration;
-    if (!is_new_line_ && !load.amplitude.follows_point && !load.phase.follows_point && !scales) continue;
-    has_changed = true;
-    const double omega = load.angular_frequency;
-    double amplitude = load.amplitude.now, phase = load.phase.now;
-    if (scales && *load.base == model::BaseMotionDescription::Of::displacement) amplitude *= -omega * omega;
-    if (scales && *load.base == model::BaseMotionDescription::Of::velocity) {
-      amplitude *= omega;
-      phase += 0.5 * std::numbers::pi;
-    }
-    load.complex_amplitude = {amplitude * std::cos(phase), amplitude * std::sin(phase)};
+  for (Law& law : laws_) {
+    evaluate(law.amplitude, law.part, "amplitude");
+    evaluate(law.phase, law.part, "phase");
+    evaluate(law.frequency, law.part, law.frequency_factor == 1.0 ? "angular_frequency" : "frequency");
+    law.now = {law.amplitude.now, law.frequency_factor * law.frequency.now, law.phase.now};
+    if (!(law.now.angular_frequency >= 0.0))
+      throw InvalidInput(law.frequency.quantity->where,
+                         fmt::format("{}: its frequency must not be negative, got {}", law.part, law.frequency.now));
+    has_changed = has_changed || law.amplitude.follows_point || law.phase.follows_point || law.scales;
   }
   return has_changed;
 }
 
 // Whether every frequency is the multiple of one fundamental that it was at the point before.
 bool ParametricExcitation::orders_hold() const {
-  const auto moving = std::find_if(loads_.begin(), loads_.end(), [](const Load& load) { return load.order > 0; });
-  if (moving == loads_.end()) return false;
-  const double fundamental = moving->angular_frequency / moving->order;
-  return fundamental > 0.0 && std::all_of(loads_.begin(), loads_.end(), [&](const Load& load) {
-           return load.order ==
-                  (load.angular_frequency > 0.0 ? integrate::order_over(load.angular_frequency, fundamental) : 0);
+  const auto moving = std::find_if(laws_.begin(), laws_.end(), [](const Law& law) { return law.order > 0; });
+  if (moving == laws_.end()) return false;
+  const double fundamental = moving->now.angular_frequency / moving->order;
+  return fundamental > 0.0 && std::all_of(laws_.begin(), laws_.end(), [&](const Law& law) {
+           const double w = law.now.angular_frequency;
+           return law.order == (w > 0.0 ? integrate::order_over(w, fundamental) : 0);
          });
 }
 
 void ParametricExcitation::find_orders() {
   std::vector<double> frequencies;
-  for (const Load& load : loads_)
-    if (load.angular_frequency > 0.0) frequencies.push_back(load.angular_frequency);
+  for (const Law& law : laws_)
+    if (law.now.angular_frequency > 0.0) frequencies.push_back(law.now.angular_frequency);
   if (frequencies.empty()) throw InvalidInput("no load has a frequency above zero: nothing repeats");
   has_period_ = needs_period_ || integrate::common_fundamental(frequencies).has_value();
   if (!has_period_) {
-    for (Load& load : loads_) load.order = 0;
+    for (Law& law : laws_) law.order = 0;
     return;
   }
   const double fundamental = integrate::fundamental_of(frequencies);
-  for (Load& load : loads_)
-    load.order = load.angular_frequency > 0.0 ? integrate::order_over(load.angular_frequency, fundamental) : 0;
+  for (Law& law : laws_) {
+    const double w = law.now.angular_frequency;
+    law.order = w > 0.0 ? integrate::order_over(w, fundamental) : 0;
+  }
 }
 
 double ParametricExcitation::window() const {
   constexpr double beats = 4.0, periods = 30.0;
   double slowest = HUGE_VAL, nearest = HUGE_VAL;
-  for (const Load& load : loads_) {
-    if (!(load.angular_frequency > 0.0)) continue;
-    slowest = std::min(slowest, load.angular_frequency);
-    for (const Load& other : loads_) {
-      const double beat = std::abs(load.angular_frequency - other.angular_frequency);
-      if (other.angular_frequency > 0.0 && beat > 1e-10 * load.angular_frequency) nearest = std::min(nearest, beat);
+  for (const Law& law : laws_) {
+    const double w = law.now.angular_frequency;
+    if (!(w > 0.0)) continue;
+    slowest = std::min(slowest, w);
+    for (const Law& other : laws_) {
+      const double beat = std::abs(w - other.now.angular_frequency);
+      if (other.now.angular_frequency > 0.0 && beat > 1e-10 * w) nearest = std::min(nearest, beat);
     }
   }
   return 2.0 * std::numbers::pi * std::max(beats / nearest, periods / slowest);
 }
 
 void ParametricExcitation::fill(integrate::Excitation& out) const {
-  const Index n = structure_->system.size();
-  out.constant.setZero(n);
+  out.constant.setZero(structure_->system.size());
   out.harmonics.clear();
-  for (const Load& load : loads_) {
-    integrate::ComplexVector* amplitude = nullptr;
-    if (load.order > 0) {
-      auto place = std::lower_bound(out.harmonics.begin(), out.harmonics.end(), load.order,
-                                    [](const integrate::LoadHarmonic& h, int order) { return h.order < order; });
-      if (place == out.harmonics.end() || place->order != load.order)
-        place = out.harmonics.insert(place, {load.order, integrate::ComplexVector::Zero(n)});
-      amplitude = &place->amplitude;
-    }
-    const auto add = [&](Index row, double weight) {
-      if (amplitude)
-        (*amplitude)[row] += weight * load.complex_amplitude;
-      else
-        out.constant[row] += weight * load.complex_amplitude.real();
-    };
-    if (!load.base) {
-      add(structure_->force_rows[load.force], 1.0);
+  for (const auto& load : structure_->loads) {
+    if (load.law < 0) {
+      integrate::add_load(load.term, std::get<model::HarmonicLaw>(load.term.law), 0, out);
       continue;
     }
-    for (Index row = 0; row < n; ++row)
-      if (structure_->inertia[row] != 0.0) add(row, -structure_->inertia[row]);
+    const Law& law = laws_[static_cast<std::size_t>(load.law)];
+    integrate::add_load(load.term, model::derivative(law.now, law.derivative + load.derivative), law.order, out);
   }
 }
 
@@ -220,21 +192,20 @@ void ParametricExcitation::refresh_limits(integrate::Excitation& out) {
 void ParametricExcitation::take_point(double value, integrate::Excitation& out) {
   values_[point_] = value;
   refresh_parameters();
-  const bool amplitudes_have_changed = refresh_loads();
+  const bool amplitudes_have_changed = refresh_laws();
   const bool same_orders = !is_new_line_ && orders_hold();
   if (!same_orders) find_orders();
   refresh_limits(out);
   if (!has_period_) {
-    const auto slower = [](const Load& a, const Load& b) {
-      return (a.angular_frequency > 0.0 ? a.angular_frequency : HUGE_VAL) <
-             (b.angular_frequency > 0.0 ? b.angular_frequency : HUGE_VAL);
-    };
-    out.angular_frequency = std::min_element(loads_.begin(), loads_.end(), slower)->angular_frequency;
+    out.angular_frequency = HUGE_VAL;
+    for (const Law& law : laws_)
+      if (law.now.angular_frequency > 0.0)
+        out.angular_frequency = std::min(out.angular_frequency, law.now.angular_frequency);
     return;
   }
   if (amplitudes_have_changed || !same_orders) fill(out);
-  const auto moving = std::find_if(loads_.begin(), loads_.end(), [](const Load& load) { return load.order > 0; });
-  out.angular_frequency = moving->angular_frequency / moving->order;
+  const auto moving = std::find_if(laws_.begin(), laws_.end(), [](const Law& law) { return law.order > 0; });
+  out.angular_frequency = moving->now.angular_frequency / moving->order;
   is_new_line_ = false;
 }
 

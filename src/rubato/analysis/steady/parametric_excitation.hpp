@@ -3,7 +3,9 @@
 #include <rubato/analysis/parameter_dependence.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/model/load_laws.hpp>
 #include <rubato/numerics/bound_formula.hpp>
+#include <rubato/system/assembled_model.hpp>
 
 #include <optional>
 #include <span>
@@ -11,15 +13,9 @@
 
 namespace rubato::analysis {
 
-/// A study's system at some values of its parameters, with what its loads need of it.
-struct ParametricStructure {
-  system::LocallyNonlinear system;
-  std::vector<Index> force_rows;  ///< the coordinate of each force of the description
-  Vector inertia;                 ///< M direction of the base motion [n] [kg]; empty where there is none
-};
-
-/// The structure for given values of all parameters. Negative normal loads count as zero. Throws InvalidInput.
-ParametricStructure build_structure(const model::StudyDescription& study, const numerics::Parameters& values);
+/// A study's structure for given values of all parameters, with its loads. Negative normal loads count as zero. Throws
+/// InvalidInput.
+system::AssembledModel build_structure(const model::StudyDescription& study, const numerics::Parameters& values);
 
 /// What drives a study's structure while parameters vary: the excitation at any values of some line parameters and of
 /// one point parameter (the excitation frequency), without building the model again. What does not follow the point
@@ -37,7 +33,7 @@ class ParametricExcitation {
                        std::size_t point);
 
   /// Begins a line. The structure is that of these values; it is looked at only here.
-  void take_line(std::span<const double> values, const ParametricStructure& structure);
+  void take_line(std::span<const double> values, const system::AssembledModel& structure);
   /// Writes the excitation at a point of the line into `out`, which must be the same object for all points of a line.
   /// Throws InvalidInput for values that cannot be: not finite, negative frequencies, and no common period unless that
   /// is allowed: then `out` has the limits alone.
@@ -61,16 +57,16 @@ class ParametricExcitation {
     bool follows_point = false;
     double now = 0.0;
   };
-  struct Load {
+  /// A law that loads follow: which ones, and where they act, the structure knows.
+  struct Law {
     Value amplitude, frequency, phase;
     double frequency_factor = 1.0;
-    std::optional<model::BaseMotionDescription::Of> base;  ///< of the base motion: what the law gives
-    std::size_t force = 0;                                 ///< else: its place in the description
-    std::string part;                                      ///< for messages
+    int derivative = 0;     ///< of the law, by which loads act
+    bool scales = false;    ///< loads change with its frequency: they follow derivatives of it
+    std::string part = {};  ///< for messages
 
-    double angular_frequency = 0.0;          ///< [rad/s]
-    std::complex<double> complex_amplitude;  ///< Re(... exp(i omega t))
-    int order = 0;                           ///< over the fundamental; 0: static
+    model::HarmonicLaw now;  ///< without the derivative
+    int order = 0;           ///< over the fundamental; 0: static
   };
   struct Limit {
     Value coefficient, load;
@@ -78,10 +74,10 @@ class ParametricExcitation {
   };
 
   Value value_of(const model::Quantity& quantity);
-  Load load_of(const model::HarmonicDescription& law, const std::string& part);
+  Law law_of(const model::LoadLaw& law);
   void evaluate(Value& value, const std::string& part, const char* key) const;
   void refresh_parameters();
-  bool refresh_loads();
+  bool refresh_laws();
   void refresh_limits(integrate::Excitation& out);
   bool orders_hold() const;
   void find_orders();
@@ -94,10 +90,10 @@ class ParametricExcitation {
   std::vector<double> values_;                                            ///< of all parameters
   std::vector<std::pair<std::size_t, numerics::BoundFormula>> formulas_;  ///< of parameters, in order
   numerics::Parameters named_;
-  std::vector<Load> loads_;
+  std::vector<Law> laws_;  ///< in the order of model::load_laws
   std::vector<Limit> limits_;
   std::vector<NegativeLoad> negative_loads_;
-  const ParametricStructure* structure_ = nullptr;
+  const system::AssembledModel* structure_ = nullptr;
   bool is_new_line_ = true, needs_period_ = true, has_period_ = true;
 };
 

@@ -1,4 +1,5 @@
 #include <rubato/analysis/steady/steady_plan.hpp>
+#include <rubato/model/load_laws.hpp>
 
 #include <fmt/format.h>
 
@@ -19,24 +20,18 @@ std::string quoted(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void require_harmonic_loads(const model::ModelDescription& model, const Location& where, const std::string& title) {
-  const auto require = [&](const model::TimeLawDescription& law, const Location& place_of_load,
-                           const std::string& part) {
-    if (std::holds_alternative<model::HarmonicDescription>(law)) return;
-    throw InvalidInput(
-        place(place_of_load, where),
-        fmt::format("{}{} is {}: a steady response needs harmonic loads (amplitude, angular_frequency, "
-                    "phase); write it as a sum of them, or run a transient",
-                    title, part, std::holds_alternative<model::TableDescription>(law) ? "a table" : "a formula of t"));
-  };
-  for (const auto& force : model.forces) require(force.law, force.where, fmt::format("the force on \"{}\"", force.on));
-  if (model.base_motion) require(model.base_motion->law, model.base_motion->where, "[base_motion]");
-  if (!model.prescribed.empty())
-    throw InvalidInput(place(model.prescribed.front().where, where),
-                       fmt::format("{}\"{}\" moves as its [[displacement]] says, which steady responses do not know; "
-                                   "let the ground move by [base_motion], or run a transient",
-                                   title, model.prescribed.front().on));
-  if (model.forces.empty() && !model.base_motion)
+void require_harmonic_loads(const StudyInput& input, const Location& where, const std::string& title) {
+  const auto laws = model::load_laws(input.study.model);
+  for (const auto& load : laws) {
+    if (std::holds_alternative<model::HarmonicDescription>(*load.law)) continue;
+    const auto* formula = std::get_if<model::TimeFormulaDescription>(load.law);
+    if (formula && model::is_constant(*formula, input.parameters)) continue;
+    throw InvalidInput(place(load.where, where),
+                       fmt::format("{}{} is {}: a steady response needs harmonic loads (amplitude, angular_frequency, "
+                                   "phase); write it as a sum of them, or run a transient",
+                                   title, load.part, formula ? "a formula of t" : "a table"));
+  }
+  if (laws.empty())
     throw InvalidInput(where, title + "nothing drives the model; add a [[force]] with amplitude and angular_frequency");
 }
 

@@ -23,8 +23,9 @@ struct VariedParameters {
   std::vector<Location> where;
 };
 
-/// Throws InvalidInput unless all loads are harmonic, and there is one: what does not repeat has no steady response.
-void require_harmonic_loads(const model::ModelDescription& model, const Location& where, const std::string& title);
+/// Throws InvalidInput unless all loads are harmonic or static, and there is one: what does not repeat has no steady
+/// response.
+void require_harmonic_loads(const StudyInput& input, const Location& where, const std::string& title);
 
 /// The place of the parameter that takes the frequencies: the one that is wanted, or the only one that stands in the
 /// frequencies of the loads and is not varied otherwise. Throws InvalidInput where there is none, or several.

@@ -1,5 +1,5 @@
 #include <rubato/core/error.hpp>
-#include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/integrate/steady/add_load.hpp>
 
 #include <fmt/format.h>
 
@@ -51,6 +51,21 @@ bool Excitation::is_half_wave_symmetric() const {
          std::all_of(harmonics.begin(), harmonics.end(), [](const LoadHarmonic& h) { return h.order % 2 == 1; });
 }
 
+void add_load(const system::LoadTerm& where, const model::HarmonicLaw& law, int order, Excitation& out) {
+  if (order == 0) {
+    const double now = law.amplitude * std::cos(law.phase);
+    for (std::size_t i = 0; i < where.rows.size(); ++i) out.constant[where.rows[i]] += where.weights[i] * now;
+    return;
+  }
+  const double phase = law.angular_frequency > 0.0 ? law.phase : -law.phase;
+  const std::complex<double> amplitude(law.amplitude * std::cos(phase), law.amplitude * std::sin(phase));
+  auto place = std::lower_bound(out.harmonics.begin(), out.harmonics.end(), order,
+                                [](const LoadHarmonic& h, int k) { return h.order < k; });
+  if (place == out.harmonics.end() || place->order != order)
+    place = out.harmonics.insert(place, {order, ComplexVector::Zero(out.constant.size())});
+  for (std::size_t i = 0; i < where.rows.size(); ++i) place->amplitude[where.rows[i]] += where.weights[i] * amplitude;
+}
+
 Excitation excitation_of(const system::LocallyNonlinear& system) {
   const Index n = system.size();
   Excitation result;
@@ -76,19 +91,8 @@ Excitation excitation_of(const system::LocallyNonlinear& system) {
 
   for (const auto& term : system.loads().terms()) {
     const auto& law = std::get<model::HarmonicLaw>(term.law);
-    if (law.angular_frequency == 0.0) {
-      for (std::size_t i = 0; i < term.rows.size(); ++i)
-        result.constant[term.rows[i]] += term.weights[i] * law.amplitude * std::cos(law.phase);
-      continue;
-    }
-    const int order = order_over(std::abs(law.angular_frequency), result.angular_frequency);
-    const double phase = law.angular_frequency > 0.0 ? law.phase : -law.phase;
-    auto place = std::lower_bound(result.harmonics.begin(), result.harmonics.end(), order,
-                                  [](const LoadHarmonic& h, int k) { return h.order < k; });
-    if (place == result.harmonics.end() || place->order != order)
-      place = result.harmonics.insert(place, {order, ComplexVector::Zero(n)});
-    for (std::size_t i = 0; i < term.rows.size(); ++i)
-      place->amplitude[term.rows[i]] += term.weights[i] * std::polar(law.amplitude, phase);
+    const double w = std::abs(law.angular_frequency);
+    add_load(term, law, w > 0.0 ? order_over(w, result.angular_frequency) : 0, result);
   }
   return result;
 }
