@@ -123,7 +123,7 @@ class FormulaLaw:
         jet = self.formula(t=Jet(beside(t, side), 1.0, 0.0))
         return (jet.v, jet.d, jet.dd) if isinstance(jet, Jet) else (float(jet), 0.0, 0.0)
 
-    def switches(self, begin, end, samples=20011):
+    def switches(self, begin, end, samples=5003):
         """Times inside at which a choice within the formula changes, to round-off; found by sampling."""
         text = self.formula.parsed.text
         if not re.search(r"[<>?]|==|!=|&&|\|\||abs|min|max|sign|rint", text):
@@ -164,8 +164,7 @@ class TableLaw:
         self._spline = None
 
     def value(self, t, side=0):
-        t = beside(t, 0)
-        if t < self.times[0] or t > self.times[-1]:
+        if t < self.times[0] or t > self.times[-1] or (t == self.times[-1] and side > 0 and self.beyond != "error"):
             return self._outside(t)
         # of two rows at t the second, unless the value before is asked for
         after = bisect.bisect_left(self.times, t) if side < 0 else bisect.bisect_right(self.times, t)

@@ -1,0 +1,45 @@
+"""Natural modes: `scipy.linalg.eigh` and, with damping, `eig` of the first-order form in modal coordinates."""
+
+import numpy
+import scipy.linalg
+
+
+def free_part(model):
+    moved = [i for i, _ in model.moving]
+    return [i for i in range(len(model.names)) if i not in moved]
+
+
+def matrices(model, limit):
+    f = free_part(model)
+    pick = numpy.ix_(f, f)
+    stiffness = model.K if limit == "free" else model.stuck_stiffness()
+    return model.M[pick], model.C[pick], stiffness[pick], f
+
+
+def eigenvalues(model, limit):
+    """omega [n] of the undamped modes, and all s [2n] of (s^2 M + s C + K) x = 0."""
+    mass, damping, stiffness, _ = matrices(model, limit)
+    # balanced by the diagonal of the mass, so that units and light parts do not matter
+    scale = 1 / numpy.sqrt(numpy.diag(mass))
+    mass, damping, stiffness = (m * scale[:, None] * scale[None, :] for m in (mass, damping, stiffness))
+    squares, phi = scipy.linalg.eigh(stiffness, mass)
+    omega = numpy.sqrt(numpy.maximum(squares, 0.0))
+    c = phi.T @ damping @ phi
+    n = len(omega)
+    # state (w eta, eta'), w = max(omega, 1e-4 of the mean): rigid motions keep their place
+    reference = numpy.maximum(omega, 1e-4 * max(numpy.median(omega), 1e-300))
+    a = numpy.zeros((2 * n, 2 * n))
+    a[:n, n:] = numpy.diag(reference)
+    a[n:, :n] = -numpy.diag(squares / reference)
+    a[n:, n:] = -c
+    return omega, numpy.linalg.eigvals(a)
+
+
+def residual(model, limit, s, shape):
+    """|(s^2 M + s C + K) x| over the sizes of its terms, row by row, the largest."""
+    mass, damping, stiffness, f = matrices(model, limit)
+    x = shape[f]
+    terms = [abs(s)**2 * numpy.abs(mass) @ numpy.abs(x), abs(s) * numpy.abs(damping) @ numpy.abs(x),
+             numpy.abs(stiffness) @ numpy.abs(x)]
+    left = s * s * (mass @ x) + s * (damping @ x) + stiffness @ x
+    return numpy.linalg.norm(left) / numpy.linalg.norm(sum(terms))

@@ -1,0 +1,111 @@
+"""Steady responses: complex solves where nothing slides, else a march by the flow until it repeats."""
+
+import math
+
+import numpy
+
+from flow import Flow
+from study import HarmonicLaw, Unreadable
+from structure.model import ConstantLaw
+
+
+def orders_of(model):
+    """The fundamental [rad/s] and the complex loads by order: f(t) = f_0 + sum of Re(f_k exp(i k w t))."""
+    parts = []
+    for vector, law in model.loads:
+        if not numpy.any(vector):
+            continue
+        if isinstance(law, HarmonicLaw):
+            w, f = law.angular_frequency, law.amplitude * numpy.exp(1j * law.phase)
+            if w < 0:
+                w, f = -w, numpy.conj(f)
+            parts.append((w, vector * f if w else vector * f.real))
+        elif isinstance(law, ConstantLaw):
+            parts.append((0.0, vector * (1 + 0j)))
+        elif not law.formula.parsed.used & {"t"}:
+            parts.append((0.0, vector * complex(law.value(0.0))))
+        else:
+            raise Unreadable("a load that is not harmonic")
+    frequencies = sorted({w for w, _ in parts if w > 0})
+    if not frequencies:
+        raise Unreadable("no harmonic load")
+    fundamental = next((frequencies[0] / d for d in range(1, 65)
+                        if all(abs(w * d / frequencies[0] - round(w * d / frequencies[0])) < 1e-9
+                               for w in frequencies)), None)
+    if fundamental is None:
+        raise Unreadable("no common period")
+    loads = {}
+    for w, f in parts:
+        order = round(w / fundamental)
+        loads[order] = loads.get(order, 0) + f
+    return fundamental, loads
+
+
+def linear(model, stiffness=None):
+    """The fundamental and the displacements by order, without sliders (or with those in `stiffness`)."""
+    fundamental, loads = orders_of(model)
+    stiffness = model.K if stiffness is None else stiffness
+    answers, condition = {}, 1.0
+    for order, f in loads.items():
+        w = order * fundamental
+        s = stiffness - w * w * model.M + 1j * w * model.C
+        size = numpy.abs(stiffness) + w * w * numpy.abs(model.M) + w * numpy.abs(model.C)
+        scale = 1 / numpy.sqrt(numpy.diag(size))
+        scaled = s * scale[:, None] * scale[None, :]
+        condition = max(condition, numpy.linalg.cond(scaled))
+        right = f * scale
+        x = numpy.linalg.solve(scaled, right)
+        x += numpy.linalg.solve(scaled, right - scaled @ x)
+        answers[order] = x * scale
+    return fundamental, answers, condition
+
+
+def wave(fundamental, answers, row, derivative=0, points=4096):
+    """Samples over a period of row . x(t), or of a derivative of it."""
+    tau = 2 * math.pi * numpy.arange(points) / points
+    x = numpy.zeros(points)
+    for order, vector in answers.items():
+        z = (row @ vector) * (1j * order * fundamental)**derivative if order or not derivative else 0.0
+        x += numpy.real(z * numpy.exp(1j * order * tau))
+    return x
+
+
+def extremes(x):
+    """Half peak to peak of samples over a period; each extreme lies on the parabola through three samples."""
+    def top(y):
+        i = int(numpy.argmax(y))
+        a, b, c = y[i - 1], y[i], y[(i + 1) % len(y)]
+        bend = a - 2 * b + c
+        return b - (c - a)**2 / (8 * bend) if bend < 0 else b
+    return 0.5 * (top(x) + top(-x))
+
+
+def march(model, samples=240, most_periods=400, settled=1e-9):
+    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, and the fundamental."""
+    fundamental, loads = orders_of(model)
+    period = 2 * math.pi / fundamental
+    fundamental_model = model
+    flow = Flow(fundamental_model, 0.0, most_periods * period, model.q0 * 0, model.v0 * 0,
+                [0.0] * len(model.sliders), most_strides=400000)
+    before = None
+    for k in range(most_periods):
+        state = numpy.concatenate([flow.eta * flow.scale, flow.rate,
+                                   [flow.slider_force(i) for i in range(len(model.sliders))]])
+        if before is not None:
+            change = numpy.linalg.norm(state - before) / max(numpy.linalg.norm(state), 1e-300)
+            if change < settled:
+                break
+        before = state
+        flow.advance((k + 1) * period)
+    else:
+        raise Unreadable("the march does not settle")
+    begin = flow.t
+    rows = {"q": [], "v": [], "force": [], "slip": []}
+    for j in range(samples):
+        flow.advance(begin + period * (j + 1) / samples)
+        q, v = flow.full()
+        rows["q"].append(q)
+        rows["v"].append(v)
+        rows["force"].append([flow.slider_force(i) for i in range(len(model.sliders))])
+        rows["slip"].append([flow.slip(i) for i in range(len(model.sliders))])
+    return {key: numpy.array(value) for key, value in rows.items()}, fundamental, flow

@@ -1,0 +1,1 @@
+"""Structures of the oracle: their matrices, loads and contacts, all dense."""
