@@ -9,7 +9,20 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-void raise_flag(int) { stop.store(true); }
+std::atomic<bool> was_asked{false};
+
+void raise_flag(int signal) {
+  stop.store(true);
+  if (!was_asked.exchange(true)) return;
+  std::signal(signal, SIG_DFL);  // its default action comes once this handler has returned
+  std::raise(signal);
+}
+
+// Terminals and supervisors send this one beside another, or twice: it is no second request.
+void raise_flag_by_hangup(int) {
+  stop.store(true);
+  was_asked.store(true);
+}
 
 void on(int signal, void (*handler)(int), int flags) {
   struct sigaction action {};
@@ -29,11 +42,10 @@ bool is_ignored(int signal) {
 void request_stop() { stop.store(true); }
 
 const std::atomic<bool>& stop_on_interrupt() {
-  // The default action comes back with the first signal; calls that it meets (a write) go on.
-  constexpr int once = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-  on(SIGINT, raise_flag, once);
-  on(SIGTERM, raise_flag, once);
-  if (!is_ignored(SIGHUP)) on(SIGHUP, raise_flag, once);  // nohup ignores it
+  // Calls that a signal meets (a write) go on.
+  on(SIGINT, raise_flag, SA_RESTART);
+  on(SIGTERM, raise_flag, SA_RESTART);
+  if (!is_ignored(SIGHUP)) on(SIGHUP, raise_flag_by_hangup, SA_RESTART);  // nohup ignores it
   on(SIGXFSZ, SIG_IGN, 0);
   on(SIGPIPE, SIG_IGN, 0);
   return stop;

@@ -5,7 +5,7 @@
 namespace rubato::app {
 
 /// A flag that the first Ctrl-C (or SIGTERM, or the end of the terminal) raises, so that analyses stop at the next
-/// accepted step and keep what they have; the second ends the process.
+/// accepted step or iteration and keep what they have; a second Ctrl-C or SIGTERM ends the process.
 ///
 /// A file that may not grow is then an error of its write, and whoever stops reading the messages stops no run: SIGXFSZ
 /// and SIGPIPE are ignored.

@@ -187,6 +187,25 @@ observe = "mass"
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("was left by another study, other files that it names", result.stderr)
 
+    def test_resume_asks_for_the_room_of_what_is_still_to_come(self):
+        # The whole takes 48 MB and a reserve of 8 MB; the disk has 60 MB, and half of the results are there.
+        self.write(200, 60)
+        (self.folder / "disk").mkdir()
+        if subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "tmpfs", self.folder / "disk"],
+                          capture_output=True).returncode != 0:
+            self.skipTest("no disk of its own can be mounted here")
+        script = f"""set -e
+            mount -t tmpfs -o size=60m tmpfs disk
+            {RUBATO} run study.toml -o disk/out -q --jobs 1 2> /dev/null & run=$!
+            while [ "$(stat -c %s disk/out/frf.resume 2> /dev/null || echo 0)" -lt 4500000 ]; do kill -0 $run; sleep 0.002; done
+            kill -TERM $run
+            wait $run || true
+            df --output=avail -k disk | tail -n 1
+            {RUBATO} run study.toml -o disk/out -q --resume"""
+        result = subprocess.run(["unshare", "-rm", "sh", "-c", script], cwd=self.folder, timeout=120, capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), result.stdout)
+        self.assertLess(int(result.stdout), 49_000, "there was room for the whole")
+
     def test_refuses_to_resume_another_study(self):
         self.write(200, 2)
         (self.folder / "out").mkdir()

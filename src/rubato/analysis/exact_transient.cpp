@@ -1,5 +1,6 @@
 #include <rubato/analysis/transient.hpp>
 #include <rubato/analysis/transient_recorder.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 
 #include <fmt/format.h>
@@ -126,7 +127,13 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
     if (is_last && plan.output == Kind::every_step && (times.empty() || times.back() < plan.duration - round_off))
       times.push_back(plan.duration);
     const double end = is_last ? plan.duration : times.back();
-    const integrate::ExactReport report = flow.advance(state, end, times, visitor, plan.energy);
+    integrate::ExactReport report;
+    try {
+      const StopScope scope(context.stop);
+      report = flow.advance(state, end, times, visitor, plan.energy);
+    } catch (const Stopped&) {  // between two rows
+      report.end = integrate::ExactEnd::stopped;
+    }
     visitor.keep(visitor.last_work());
     transitions += report.transitions;
     context.progress.advance(state.t);

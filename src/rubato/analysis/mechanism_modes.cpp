@@ -2,6 +2,7 @@
 #include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
 #include <rubato/analysis/mechanism_tables.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
@@ -131,6 +132,7 @@ system::State reach(const std::string& name, const MechanismModesPlan::Reached& 
     warn_of_motion(held, mechanism, report.warnings);
     return at_rest(held, mechanism, report.warnings);
   }
+  const StopScope scope(context.stop);
   const MechanismStatic found = equilibrium_near(march.state(), mechanism);
   report.message = with_friction_told(found.complaint(mechanism), mechanism);
   if (!report.message.empty()) report.status = RunStatus::failed;
@@ -188,6 +190,7 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
   }
   const system::State state = plan.reached ? reach(name, *plan.reached, mechanism, context, report) : plan.state;
   if (!report.message.empty()) return report;
+  const StopScope scope(context.stop);
   system::MechanismEquations equations(mechanism);
   const Index count = plan.modes.count > 0 ? plan.modes.count : default_count;
   const integrate::MechanismModes modes = integrate::modes_about(equations, state, count);

@@ -1,5 +1,6 @@
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/observed_blocks.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
 
 #include <fmt/format.h>
@@ -124,7 +125,12 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const system
   context.progress.begin(name, static_cast<double>(limit_count), "limits");
   for (std::size_t limit = 0; limit < limit_count && !context.stop; ++limit) {
     const SparseMatrix stiffness = limit == 0 ? system.stiffness() : system.stuck_stiffness();
-    all.push_back({limit, numerics::lowest_damped_modes(stiffness, system.damping(), system.mass(), plan.count)});
+    try {
+      const StopScope scope(context.stop);
+      all.push_back({limit, numerics::lowest_damped_modes(stiffness, system.damping(), system.mass(), plan.count)});
+    } catch (const Stopped&) {
+      break;
+    }
     context.progress.advance(static_cast<double>(limit + 1));
   }
   context.progress.end();

@@ -12,6 +12,7 @@
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
 #include <rubato/analysis/structure_tables.hpp>
 #include <rubato/analysis/transient.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/stepper.hpp>
 
 #include <fmt/format.h>
@@ -134,22 +135,35 @@ struct Check {
   }
 };
 
+/// A plan, made so that a request to stop is heard. (Marches hear of it themselves, at the end of each step, and keep
+/// what they have: they must not be left in the midst of one.)
+template <typename Make>
+auto planned(const RunContext& context, Make&& make) {
+  const StopScope scope(context.stop);
+  return make();
+}
+
 struct Run {
   const model::AnalysisDescription& analysis;
   const StudyInput& input;
   RunContext& context;
 
   RunReport operator()(const model::TransientDescription& transient) const {
-    return run_transient(analysis.name,
-                         plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters),
-                         input.system, context);
+    return run_transient(
+        analysis.name,
+        planned(
+            context,
+            [&] { return plan_transient(analysis.name, analysis.where, transient, input.system, input.parameters); }),
+        input.system, context);
   }
 
   RunReport operator()(const model::MethodStudyDescription& study) const {
+    const StopScope scope(context.stop);
     return run_method_study(analysis.name, study, input.system, input.parameters, context);
   }
 
   RunReport operator()(const model::StaticDescription& equilibrium) const {
+    const StopScope scope(context.stop);
     return run_static(analysis.name, analysis.where, equilibrium, input.system, context);
   }
 
@@ -159,11 +173,13 @@ struct Run {
   }
 
   RunReport operator()(const model::FrequencyResponseDescription& response) const {
+    const StopScope scope(context.stop);
     const FrequencyResponsePlan plan = plan_frequency_response(analysis.name, analysis.where, response, input);
     return run_frequency_response(analysis.name, plan, input, steady_solvers(plan.route), context);
   }
 
   RunReport operator()(const model::DamperCurveDescription& curve) const {
+    const StopScope scope(context.stop);
     return run_damper_curve(analysis.name, plan_damper_curve(analysis.name, analysis.where, curve, input), input,
                             damper_curve_solvers(), context);
   }
@@ -227,16 +243,21 @@ RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, con
                                  RunContext& context) {
   const system::Mechanism& mechanism = *input.mechanism;
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task))
-    return run_mechanism(analysis.name,
-                         plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters),
-                         mechanism, context);
-  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task))
+    return run_mechanism(
+        analysis.name,
+        planned(context,
+                [&] { return plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters); }),
+        mechanism, context);
+  if (const auto* equilibrium = std::get_if<model::StaticDescription>(&analysis.task)) {
+    const StopScope scope(context.stop);
     return told_of_friction(run_mechanism_static(analysis.name, analysis.where, *equilibrium, mechanism, context),
                             mechanism);
+  }
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task))
-    return run_mechanism_modes(analysis.name,
-                               plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input), mechanism,
-                               context);
+    return run_mechanism_modes(
+        analysis.name,
+        planned(context, [&] { return plan_mechanism_modes(analysis.name, analysis.where, *modes, mechanism, input); }),
+        mechanism, context);
   refuse_of_mechanism(analysis);
 }
 
@@ -247,8 +268,13 @@ AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
-  RunReport report = input.mechanism ? run_mechanism_analysis(analysis, input, context)
-                                     : std::visit(Run{analysis, input, context}, analysis.task);
+  RunReport report;
+  try {
+    report = input.mechanism ? run_mechanism_analysis(analysis, input, context)
+                             : std::visit(Run{analysis, input, context}, analysis.task);
+  } catch (const Stopped&) {
+    report = {RunStatus::interrupted, "interrupted before it had more to keep", {}};
+  }
   // Modes have written the configuration about which they are.
   if (input.mechanism && !std::holds_alternative<model::ModesDescription>(analysis.task))
     write_structure(analysis.name, input.mechanism->model(), context.sink);

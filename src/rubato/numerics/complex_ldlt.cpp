@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/complex_ldlt.hpp>
 
 #include <algorithm>
@@ -43,6 +44,7 @@ void ComplexLdlt::analyse(const SparseMatrix& pattern, std::span<const int> last
 }
 
 Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& scale) {
+  stop_if_asked();
   const double tiny = std::numeric_limits<double>::epsilon();
   Index replaced = 0;
   std::fill(mark_.begin(), mark_.end(), -1);

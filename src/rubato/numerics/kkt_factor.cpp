@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/kkt_factor.hpp>
 
 #include <Eigen/OrderingMethods>
@@ -118,7 +119,10 @@ int KktFactor::slot(Index i, Index j) const {
 
 void KktFactor::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
 
-bool KktFactor::factorise() { return is_symmetric_ ? factorise_symmetric() : factorise_both(); }
+bool KktFactor::factorise() {
+  stop_if_asked();
+  return is_symmetric_ ? factorise_symmetric() : factorise_both();
+}
 
 bool KktFactor::factorise_symmetric() {
   const int n = static_cast<int>(size_);

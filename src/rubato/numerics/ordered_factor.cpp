@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <limits>
@@ -37,6 +38,7 @@ void OrderedFactor::analyse(const SparseMatrix& matrix, std::span<const Index> l
 }
 
 bool OrderedFactor::factorise(const SparseMatrix& matrix, Pivots pivots) {
+  stop_if_asked();
   return has_panels_ ? panels_.factorise(matrix, order_, pivots) : columns_.factorise(matrix, order_, pivots);
 }
 
@@ -74,6 +76,7 @@ Matrix OrderedFactor::last_inverse() const {
 }
 
 void OrderedFactor::solve(const Vector& b, Vector& x) const {
+  stop_if_asked();
   for (Index i = 0; i < n_; ++i) scratch_[order_.place[static_cast<std::size_t>(i)]] = b[i];
   forward(scratch_, nothing);
   backward(scratch_, nothing);

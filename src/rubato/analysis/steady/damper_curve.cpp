@@ -4,6 +4,7 @@
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
 #include <rubato/analysis/steady/frequency_text.hpp>
 #include <rubato/analysis/sweep_samples.hpp>
+#include <rubato/core/stopping.hpp>
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -149,18 +150,20 @@ std::string values_text(double count) { return fmt::format("{:.0f} value{}", cou
 
 class Warnings {
  public:
-  Warnings(const DamperCurvePlan& plan, const StudyInput& input, const DamperCurveCounts& counts, DamperPeaks& family)
+  /// @param family  solves values again to say more of them; null: it must not take the time
+  Warnings(const DamperCurvePlan& plan, const StudyInput& input, const DamperCurveCounts& counts, DamperPeaks* family)
       : plan_(plan), input_(input), counts_(counts), family_(family) {}
 
   std::vector<std::string> all() {
     std::vector<std::string> warnings;
     if (const Tally& negative = counts_.negative_loads; negative.count > 0.0) {
       const auto scan = scan_of(negative.first);
-      warnings.push_back(
-          fmt::format("at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and "
-                      "counts as 0 ({} with negative loads)",
-                      place_of(negative.first), input_.study.model.sliders[scan.negative_slider].name,
-                      scan.negative_load, values_text(negative.count)));
+      const std::string which =
+          family_ ? fmt::format("the normal load of slider \"{}\" is {:.6g} N",
+                                input_.study.model.sliders[scan.negative_slider].name, scan.negative_load)
+                  : "a normal load is negative";
+      warnings.push_back(fmt::format("at {} {}: it cannot be pulled, and counts as 0 ({} with negative loads)",
+                                     place_of(negative.first), which, values_text(negative.count)));
     }
     if (counts_.at_ends.count > 0.0)
       warnings.push_back(fmt::format("at {} the largest lies at an end of the frequencies ({}); widen them",
@@ -174,8 +177,9 @@ class Warnings {
                       "steady place; they are left out ({})",
                       place_of(counts_.walks.first), values_text(counts_.walks.count)));
     if (const Tally& impossible = counts_.of(PointStatus::impossible); impossible.count > 0.0)
-      warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(impossible.first),
-                                     values_text(impossible.count), scan_of(impossible.first).reason));
+      warnings.push_back(fmt::format("at {} nothing can be computed ({}){}", place_of(impossible.first),
+                                     values_text(impossible.count),
+                                     family_ ? ": " + scan_of(impossible.first).reason : ""));
     if (const Tally& lost = counts_.of(PointStatus::not_converged); lost.count > 0.0)
       warnings.push_back(fmt::format("at {} nothing converged ({})", place_of(lost.first), values_text(lost.count)));
     if (counts_.unconverged_samples > 0.0)
@@ -205,16 +209,17 @@ class Warnings {
   }
 
   DamperPeaks::Scan scan_of(double number) {
+    if (!family_) return {};
     const auto [line, value] = split(number);
-    family_.take_line(line);
-    (void)family_.peaks(plan_.values[value]);
-    return family_.scan();
+    family_->take_line(line);
+    (void)family_->peaks(plan_.values[value]);
+    return family_->scan();
   }
 
   const DamperCurvePlan& plan_;
   const StudyInput& input_;
   const DamperCurveCounts& counts_;
-  DamperPeaks& family_;
+  DamperPeaks* family_;
 };
 
 /// Solves lines of the sweep; the values of one side by side where there are few lines.
@@ -228,14 +233,20 @@ class Lines {
 
   DamperLineResult solve(long line, bool side_by_side) {
     std::vector<DamperValue> values(plan_.values.size());
+    const StopScope scope(stop_);
     const auto solve_one = [&](std::size_t i) {
       if (stop_.load()) return;
+      const StopScope scope_of_thread(stop_);
       DamperPeaks& family = *families_.local();
       family.take_line(line);
-      DamperValue value =
-          solve_value(family, plan_.values[i], with_limits_ && (i == 0 || plan_.limits_follow_parameter));
-      if (stop_.load()) return;  // what was broken off is no result
-      values[i] = std::move(value);
+      try {
+        DamperValue value =
+            solve_value(family, plan_.values[i], with_limits_ && (i == 0 || plan_.limits_follow_parameter));
+        if (stop_.load()) return;  // what was broken off is no result
+        values[i] = std::move(value);
+      } catch (const Stopped&) {
+        return;
+      }
       progress_.add(1);
     };
     if (side_by_side)
@@ -328,9 +339,8 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   report.statistics = {{"values", fmt::format("{:.0f}", counts.total())},
                        {"points_solved", fmt::format("{:.0f}", counts.solves)}};
   counts.describe(report.statistics);
-  const std::atomic<bool> never{false};  // an interrupt must not keep it from saying what was found
-  DamperPeaks witness(plan, input, solvers, never);
-  report.warnings = Warnings(plan, input, counts, witness).all();
+  DamperPeaks witness(plan, input, solvers, context.stop);
+  report.warnings = Warnings(plan, input, counts, report.status == RunStatus::interrupted ? nullptr : &witness).all();
   if (const std::string finding = tables.finding(); !finding.empty()) report.findings = {finding};
   return report;
 }

@@ -1,4 +1,5 @@
 #include <rubato/analysis/steady/damper_curve_line.hpp>
+#include <rubato/core/stopping.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -168,12 +169,16 @@ DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTable
   if (!result.is_whole || !plan.has_optimum) return result;
 
   const double solved = family.solves();
-  const auto optimum = find_optimum(family, plan.values, objectives, plan.sign());
-  if (optimum) {
-    const Peak& peak = optimum->active.front();
-    tables.add_optimum(keys, *optimum, family.response_at(optimum->parameter, peak.at), result.optimum);
-  } else {
-    result.counts.without_optimum += 1.0;
+  try {
+    const auto optimum = find_optimum(family, plan.values, objectives, plan.sign());
+    if (optimum) {
+      const Peak& peak = optimum->active.front();
+      tables.add_optimum(keys, *optimum, family.response_at(optimum->parameter, peak.at), result.optimum);
+    } else {
+      result.counts.without_optimum += 1.0;
+    }
+  } catch (const Stopped&) {
+    result.is_whole = false;
   }
   result.counts.solves += family.solves() - solved;
   return result;

@@ -131,8 +131,9 @@ std::string drift_text(const FrequencyResponsePlan& plan, const Vector& drift) {
              : std::string();
 }
 
+/// @param solver  solves points again to say more of them; null: it must not take the time
 std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const StudyInput& input,
-                                     const SweepCounts& counts, PieceSolver& solver) {
+                                     const SweepCounts& counts, PieceSolver* solver) {
   std::vector<std::string> warnings;
   const auto split = [&](double point) {
     const auto line = static_cast<long>(point / static_cast<double>(plan.steps.size()));
@@ -141,28 +142,35 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
   };
   if (const Tally& negative = counts.negative_loads; negative.count > 0.0) {
     const auto [line, step] = split(negative.first);
-    for (const auto& [slider, load] : solver.negative_loads(line, step)) {
-      warnings.push_back(fmt::format(
-          "at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and counts "
-          "as 0 ({} with negative loads)",
-          place_of(plan, negative.first), input.study.model.sliders[slider].name, load, points_text(negative.count)));
-      break;
-    }
+    if (!solver)
+      warnings.push_back(
+          fmt::format("at {} a normal load is negative: it cannot be pulled, and counts as 0 ({} with "
+                      "negative loads)",
+                      place_of(plan, negative.first), points_text(negative.count)));
+    else
+      for (const auto& [slider, load] : solver->negative_loads(line, step)) {
+        warnings.push_back(fmt::format(
+            "at {} the normal load of slider \"{}\" is {:.6g} N: it cannot be pulled, and counts "
+            "as 0 ({} with negative loads)",
+            place_of(plan, negative.first), input.study.model.sliders[slider].name, load, points_text(negative.count)));
+        break;
+      }
   }
   if (const Tally& unbounded = counts.of(PointStatus::unbounded); unbounded.count > 0.0)
     warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
                                    place_of(plan, unbounded.first), points_text(unbounded.count)));
   if (const Tally& drifting = counts.of(PointStatus::drifting); drifting.count > 0.0) {
     const auto [line, step] = split(drifting.first);
-    warnings.push_back(fmt::format(
-        "at {} the structure walks over its sliders{}, and has no steady place; only a "
-        "spring would give it one ({})",
-        place_of(plan, drifting.first), drift_text(plan, solver.drift(line, step)), points_text(drifting.count)));
+    warnings.push_back(
+        fmt::format("at {} the structure walks over its sliders{}, and has no steady place; only a "
+                    "spring would give it one ({})",
+                    place_of(plan, drifting.first), solver ? drift_text(plan, solver->drift(line, step)) : "",
+                    points_text(drifting.count)));
   }
   if (const Tally& impossible = counts.of(PointStatus::impossible); impossible.count > 0.0) {
     const auto [line, step] = split(impossible.first);
-    warnings.push_back(fmt::format("at {} nothing can be computed ({}): {}", place_of(plan, impossible.first),
-                                   points_text(impossible.count), solver.reason(line, step)));
+    warnings.push_back(fmt::format("at {} nothing can be computed ({}){}", place_of(plan, impossible.first),
+                                   points_text(impossible.count), solver ? ": " + solver->reason(line, step) : ""));
   }
   if (const Tally& lost = counts.of(PointStatus::not_converged); lost.count > 0.0)
     warnings.push_back(
@@ -241,7 +249,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
   report.statistics = {{"points", fmt::format("{:.0f}", counts.total())}};
   counts.describe(report.statistics);
   report.statistics.emplace_back("iterations", fmt::format("{:.0f}", counts.iterations));
-  report.warnings = warnings_of(plan, input, counts, worker());
+  report.warnings = warnings_of(plan, input, counts, report.status == RunStatus::interrupted ? nullptr : &worker());
   return report;
 }
 

@@ -1,5 +1,6 @@
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
 
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/quasi_periodic.hpp>
 
 #include <algorithm>
@@ -130,15 +131,15 @@ void PieceSolver::march_without_period(Lane& lane, double point, integrate::Stea
 void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
                                const integrate::SteadyResponse& response, PieceResult& result) {
   const RowPlace place = place_of(lane, step);
+  // Both directions have the same limits.
+  if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
+    solve_linear(place, excitation, result);
   tables_.main.add(place, excitation.angular_frequency, response, result.main);
   SweepCounts& counts = result.counts;
   const double number = point_number(line, step);
   counts.of(point_status(response.status)).note(number);
   counts.iterations += response.iterations;
   if (!lane.drive->negative_loads().empty()) counts.negative_loads.note(number);
-  // Both directions have the same limits.
-  if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
-    solve_linear(place, excitation, result);
   progress_.add(1);
 }
 
@@ -204,6 +205,8 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
         finish_point(lanes_[i], piece.first_line + static_cast<long>(i), step, excitations_[i], responses_[i],
                      lanes_[i].result);
     }
+  } catch (const Stopped&) {
+    result.is_whole = false;
   } catch (const InvalidInput&) {
     double points = 0.0;
     for (std::size_t i = 0; i < count; ++i) points += lanes_[i].result.counts.total();
@@ -220,11 +223,16 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
 }
 
 PieceResult PieceSolver::solve(const SweepPiece& piece) {
+  const StopScope scope(stop_);
   PieceResult result;
   result.piece = piece;
-  if (piece.lines > 1 && solve_lanes(piece, result)) return result;
-  for (int i = 0; i < piece.lines && result.is_whole; ++i)
-    solve_line({piece.first_line + i, 1, piece.first_step, piece.steps}, result);
+  try {
+    if (piece.lines > 1 && solve_lanes(piece, result)) return result;
+    for (int i = 0; i < piece.lines && result.is_whole; ++i)
+      solve_line({piece.first_line + i, 1, piece.first_step, piece.steps}, result);
+  } catch (const Stopped&) {
+    result.is_whole = false;
+  }
   return result;
 }
 

@@ -71,7 +71,7 @@ class SweepProgress {
 /// Solves pieces of a sweep; what it answers for a piece does not depend on the pieces before. One a thread.
 class PieceSolver {
  public:
-  /// @param stop  asks to leave at the next point
+  /// @param stop  asks to leave, also in the midst of a point, which is then not among the rows
   PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
               const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop);
 

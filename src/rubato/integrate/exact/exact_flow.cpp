@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/exact/first_exit.hpp>
 
@@ -166,6 +167,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   };
 
   while (state.t < t_end || next_sample < samples.size()) {
+    stop_if_asked();
     const double piece_end = std::min(t_end, table_end());
     double length = std::min(piece_.max_length(), piece_end - state.t);
     const bool reaches_end = length >= piece_end - state.t;

@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
 
 #include <algorithm>
@@ -230,6 +231,7 @@ HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& 
     outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
     outcome.has_converged = size <= reachable;
     if (outcome.has_converged || outcome.iterations >= most_iterations || !std::isfinite(size)) break;
+    stop_if_asked();
     ++outcome.iterations;
     differentiate(series);
     if (!is_large(series)) factorise(series);

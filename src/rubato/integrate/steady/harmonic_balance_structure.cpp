@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/harmonic_balance_parts.hpp>
 
 #include <algorithm>
@@ -77,6 +78,7 @@ void HarmonicBalanceSolver::Implementation::load_on(int order, ComplexVector& lo
 
 bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harmonic, double angular_frequency,
                                                          int order) {
+  stop_if_asked();
   const bool is_condensed = harmonic.angular_frequency == angular_frequency;
   if (!is_condensed) {
     harmonic.held = 0.0;

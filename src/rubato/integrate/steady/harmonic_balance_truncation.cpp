@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
 
 // What the orders left out would do.
@@ -25,6 +26,7 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   Vector right(2 * m);
   std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
   for (std::size_t p = first; p < end; ++p) {
+    stop_if_asked();
     const CondensedHarmonic& harmonic = harmonics[p];
     const int k = series.orders.at(static_cast<int>(p) - 1);
     const auto place = static_cast<Index>(p - first);

@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/fourier_series.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 
@@ -74,6 +75,7 @@ void LinearResponse::solve(const Excitation& excitation, SteadyStart, SteadyResp
 }
 
 double LinearResponse::solve_order(int order, const ComplexVector& force, ComplexVector& x, Doubt& doubt) {
+  stop_if_asked();
   std::optional<StiffnessSolution> by_modes;
   if (modal_) by_modes = modal_->solve(order * omega_, force, x);
   if (!by_modes) stiffness_.factorise(order * omega_);

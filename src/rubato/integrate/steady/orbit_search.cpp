@@ -1,5 +1,6 @@
 #include <rubato/integrate/steady/orbit_search.hpp>
 
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <Eigen/LU>
@@ -200,6 +201,7 @@ std::vector<OrbitReport> search_orbits(PeriodMap& map, const OrbitSearchOptions&
   std::vector<double> drifts(lanes.size(), 0.0);
   if (extrapolation) extrapolation->begin(map, count);
   for (int period = 0; period < options.max_periods; ++period) {
+    stop_if_asked();
     if (!map.advance(states, after, nullptr, 0)) {
       for (Lane& lane : lanes)
         if (!lane.is_done) lane.report.residual = infinity;

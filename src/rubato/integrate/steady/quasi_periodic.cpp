@@ -1,6 +1,7 @@
 #include <rubato/integrate/steady/quasi_periodic.hpp>
 
 #include <rubato/core/error.hpp>
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/stepper_map.hpp>
 #include <rubato/integrate/stepper.hpp>
 
@@ -42,6 +43,7 @@ class WindowMarch {
     writer_.write(now_, record_, 0, false);
     const double h = window_ / steps_;
     for (int j = 0; j < steps_; ++j) {
+      stop_if_asked();
       const double t1 = h * (static_cast<double>(windows_) * steps_ + j + 1);
       if (stepper_->attempt(now_, h, t1, next_).outcome != StepOutcome::accepted) return false;
       std::swap(now_, next_);

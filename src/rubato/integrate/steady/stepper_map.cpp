@@ -1,5 +1,6 @@
 #include <rubato/integrate/steady/stepper_map.hpp>
 
+#include <rubato/core/stopping.hpp>
 #include <rubato/integrate/stepper.hpp>
 
 #include <algorithm>
@@ -62,6 +63,7 @@ class StepperMap final : public PeriodMap {
     const double h = period_ / steps_;
     system::State *now = &from_, *next = &to_;
     for (int j = 0; j < steps_; ++j) {
+      stop_if_asked();
       const double t1 = j + 1 == steps_ ? period_ : h * (j + 1);
       if (stepper_->attempt(*now, h, t1, *next).outcome != StepOutcome::accepted) return false;
       std::swap(now, next);
