@@ -318,6 +318,27 @@ TEST(TableLoad, IsNeverSteppedOverAndItsJumpsRestartTheMarch) {
   EXPECT_GT(errors.relative(), 1e-5);
 }
 
+// 1 N from 1 s to 4.3 s by a table of two rows, zero beyond: both ends are jumps. The error was of first order in the
+// step where the last row was taken for a corner, 10 tolerances at 1e-3 and 960 at 1e-7.
+TEST(TableLoad, ThatBeginsAndEndsWithAValueJumpsThere) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = SparseMatrix(1, 1);
+  parts.loads = system::Loads({{{0}, {1.0}, model::TableLaw{{1.0, 4.3}, {1, 1}, model::TableLaw::Beyond::zero, ""}}});
+  parts.coordinates = {"x"};
+  const system::LocallyNonlinear system(std::move(parts));
+  const auto exact = [](double t) {
+    const double since = t < 1.0 ? 0.0 : 1.0 - std::cos(t - 1.0), after = t < 4.3 ? 0.0 : 1.0 - std::cos(t - 4.3);
+    return Vector::Constant(1, since - after);
+  };
+  for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
+    testing::LargestError<Truth> errors(system, exact);
+    const Marched marched = run(system, make_method("generalized_alpha"), LocalError{tolerance}, {}, 10.0, &errors);
+    EXPECT_EQ(marched.report.restarts, 2);
+    EXPECT_LT(errors.relative(), 10.0 * tolerance);
+  }
+}
+
 // Between rows at equal distances the steps are equal parts, of few lengths, and the matrices of a length that comes
 // again are at hand: without either almost every change would cost a factorisation.
 TEST(TableLoad, OfManyRowsNeedsFewFactorisations) {

@@ -120,10 +120,24 @@ TEST(TableLaw, HasALeftAndARightValueWhereItJumps) {
   EXPECT_EQ(model::value(table, 1.0, model::Side::right), 5.0);
   EXPECT_EQ(model::value(table, 2.0), 6.0);
   EXPECT_EQ(model::value(table, 3.0, model::Side::left), 7.0);
+  EXPECT_EQ(model::value(table, 3.0, model::Side::right), 0.0);
   EXPECT_EQ(model::value(table, 3.5), 0.0);
   table.beyond = model::TableLaw::Beyond::hold;
   EXPECT_EQ(model::value(table, 3.5), 7.0);
   EXPECT_EQ(model::value(table, -1.0), 0.0);
+}
+
+// With beyond = "zero" the first and the last row are jumps where their values are not zero, except at t = 0, which no
+// time of the study precedes.
+TEST(TableLaw, JumpsWhereItBeginsAndEndsWithAValue) {
+  model::TableLaw late{{1.0, 3.0}, {4.0, 7.0}, model::TableLaw::Beyond::zero, ""};
+  EXPECT_EQ(model::value(late, 1.0, model::Side::left), 0.0);
+  EXPECT_EQ(model::value(late, 1.0, model::Side::right), 4.0);
+  EXPECT_EQ(model::value(late, 3.0, model::Side::left), 7.0);
+  EXPECT_EQ(model::value(late, 3.0, model::Side::right), 0.0);
+  const model::TableLaw from_the_start{{0.0, 3.0}, {4.0, 7.0}, model::TableLaw::Beyond::zero, ""};
+  EXPECT_EQ(model::value(from_the_start, 0.0, model::Side::left), 4.0);
+  EXPECT_EQ(model::value(from_the_start, 0.0, model::Side::right), 4.0);
 }
 
 }  // namespace

@@ -11,8 +11,9 @@ double value(const TableLaw& table, double t, Side side) {
   const bool before = side == Side::right ? t < times.front() : t <= times.front();
   const bool after = side == Side::right ? t >= times.back() : t > times.back();
   if (before || after) {
-    const bool at_an_end = t == times.front() || t == times.back();
-    if (table.beyond == TableLaw::Beyond::zero && !at_an_end) return 0.0;
+    // No time precedes the study: what the first row says at t = 0 held before.
+    const bool starts_the_study = t == 0.0 && times.front() == 0.0;
+    if (table.beyond == TableLaw::Beyond::zero && !starts_the_study) return 0.0;
     return before ? table.values.front() : table.values.back();
   }
   // The row that ends the interval to which t belongs, seen from the given side.
