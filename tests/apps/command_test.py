@@ -408,6 +408,18 @@ duration = 1.0
             self.assertIn(f"error: out: the folder {told} while the run wrote into it; the run ends here, without results\n", err)
             shutil.rmtree(out, ignore_errors=True)
 
+    def test_a_name_that_files_or_netcdf_cannot_bear_is_refused_by_check(self):
+        study = self.write(LONG.replace("DURATION", "1.0"))
+        self.assertEqual(self.run_command("run", study, "-o", "out", "-q").returncode, 0)
+        before = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+        for name in ("-o", "(a)", "{}", "a" * 257, "a/b", "..", "a "):
+            self.write(LONG.replace("DURATION", "1.0").replace('"long"', f'"{name}"'))
+            for command in (["check", study], ["run", study, "-o", "out"]):
+                result = self.run_command(*command)
+                self.assertEqual((result.returncode, result.stdout), (2, ""), name)
+                self.assertIn("becomes the name of files and of a netCDF group: it begins with a letter", result.stderr)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()})
+
     def test_former_results_stay_until_the_new_run_can_write(self):
         study = EXAMPLES / "single-mass" / "study.toml"
         self.run_command("run", study, "-o", "out", "-q", "--only", "response")

@@ -233,6 +233,17 @@ observe = "mass"
         self.assertRegex(result.stderr, r'^study.toml:25:1: error: analysis "frf": a sweep of 1e\+12 points keeps 8e\+03 GB, and '
                                         r"this machine has \S+ GB; observe fewer coordinates, or take fewer points\n$")
 
+    def test_a_parameter_called_as_a_table_is_refused_by_check(self):
+        for name in ("linear", "waveforms", "bands", "sample", "coordinate", "slider"):
+            self.write(5, 2, ("points = 5 }\n", "points = 5 }\nwaveforms = { at = [1.0] }\n"))
+            text = (self.folder / "study.toml").read_text()
+            text = text.replace("\nk = 1.0", f"\n{name} = 1.0").replace('stiffness = "k"', f'stiffness = "{name}"').replace(
+                "{ k = { from", "{ " + name + " = { from")
+            (self.folder / "study.toml").write_text(text)
+            result = self.run_command("check", "study.toml")
+            self.assertEqual(result.returncode, 2, name)
+            self.assertIn(f'the swept parameter "{name}" would head a column of results that has another meaning', result.stderr)
+
     def test_negative_preloads_are_told(self):
         self.write(5, 2, ("N0 = [0.2, 0.5, 1, 2, 4]", "N0 = [-1, 1]"))
         result = self.run_command("run", "study.toml", "-o", "out", "-q")

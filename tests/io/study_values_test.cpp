@@ -37,6 +37,12 @@ TEST(NameError, RefusesDuplicates) {
       verdict_with("[[analysis]]",
                    "[[analysis]]\nname = \"response\"\ntype = \"transient\"\nstep = 1\nduration = 10\n\n[[analysis]]"),
       "study.toml:44:8: error: two analyses are called \"response\"; the first is on line 37");
+  EXPECT_EQ(
+      verdict_with("[[analysis]]",
+                   "[[analysis]]\nname = \"Response\"\ntype = \"transient\"\nstep = 1\nduration = 10\n\n[[analysis]]"),
+      "study.toml:44:8: error: the analyses \"Response\" (line 37) and \"response\" differ in case alone, and some "
+      "file "
+      "systems would take their files for the same; rename one");
 }
 
 TEST(NameError, RefusesNamesThatMeanSomethingElse) {
@@ -47,10 +53,21 @@ TEST(NameError, RefusesNamesThatMeanSomethingElse) {
       verdict_with("name = \"blade\"", "name = \"a\\nb\""),
       "study.toml:11:8: error: the name \"a?b\" cannot head a column of results: no comma, semicolon, quote, slash, "
       "control character, \" - \", or space at its ends");
-  EXPECT_EQ(
-      verdict_with("name = \"response\"", "name = \"a/b\""),
-      "study.toml:38:8: error: the analysis name \"a/b\" becomes a file name: it cannot be empty or \"results\", or "
-      "hold a slash, a dot or a control character");
+  const std::string rules =
+      "\" becomes the name of files and of a netCDF group: it begins with a letter, a digit or an underscore, has at "
+      "most "
+      "200 bytes, holds no slash, dot, control character or separate accent, does not end with a blank, and is not "
+      "\"results\"";
+  for (const std::string name : {"a/b", "a.b", "", "-o", "(a)", "{}", " a", "a ", "results", "+", "cafe\xcc\x81"})
+    EXPECT_EQ(verdict_with("name = \"response\"", "name = \"" + name + "\""),
+              "study.toml:38:8: error: the analysis name \"" + name + rules);
+  EXPECT_EQ(verdict_with("name = \"response\"", "name = \"" + std::string(257, 'a') + "\""),
+            "study.toml:38:8: error: the analysis name \"" + std::string(60, 'a') + "..." + rules);
+  for (const std::string name : {"a b-c (d)", "_a", "1",
+                                 "\xc3\x9c"
+                                 "bergang",
+                                 "caf\xc3\xa9"})
+    EXPECT_EQ(verdict_with("name = \"response\"", "name = \"" + name + "\""), "accepted");
   EXPECT_EQ(verdict_with("N0 = 10.0", "N0 = 10.0\nt = 1"),
             "study.toml:5:5: error: parameter \"t\": the name is taken (the time); choose another");
   EXPECT_EQ(verdict_with("N0 = 10.0", "N0 = 10.0\nsin = 1"),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace rubato::io {
 namespace {
@@ -180,6 +181,46 @@ ModesDescription read_modes(TomlReader& reader) {
   return modes;
 }
 
+/// The name of an analysis is that of files in the folder of results, and of a group of netCDF, which both have rules.
+bool is_fit(const std::string& name) {
+  constexpr std::size_t longest = 200;  // bytes: file systems take 255, and ".waveforms.csv.partial" follows
+  const auto is_unfit = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '.'; };
+  if (name.empty() || name.size() > longest || std::any_of(name.begin(), name.end(), is_unfit)) return false;
+  const auto first = static_cast<unsigned char>(name.front());
+  if (!(std::isalnum(first) || first == '_' || first >= 0x80) || name.back() == ' ') return false;
+  // Accents that follow their letter (U+0300 to U+036F): netCDF joins the two, and the name is another then.
+  for (std::size_t i = 0; i + 1 < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]), next = static_cast<unsigned char>(name[i + 1]);
+    if (c == 0xcc || (c == 0xcd && next <= 0xaf)) return false;
+  }
+  return name != "results";
+}
+
+bool differ_in_case_alone(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+void require_name(const std::string& name, const std::vector<AnalysisDescription>& before, const Location& where) {
+  constexpr std::size_t most_told = 60;
+  if (!is_fit(name))
+    throw InvalidInput(
+        where,
+        fmt::format("the analysis name \"{}{}\" becomes the name of files and of a netCDF group: it begins with a "
+                    "letter, a digit or an underscore, has at most 200 bytes, holds no slash, dot, control "
+                    "character or separate accent, does not end with a blank, and is not \"results\"",
+                    name.substr(0, most_told), name.size() > most_told ? "..." : ""));
+  for (const auto& other : before) {
+    if (other.name == name)
+      throw InvalidInput(
+          where, fmt::format("two analyses are called \"{}\"; the first is on line {}", name, other.where.line));
+    if (differ_in_case_alone(other.name, name))
+      throw InvalidInput(where, fmt::format("the analyses \"{}\" (line {}) and \"{}\" differ in case alone, and some "
+                                            "file systems would take their files for the same; rename one",
+                                            other.name, other.where.line, name));
+  }
+}
+
 }  // namespace
 
 std::vector<AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder) {
@@ -189,20 +230,9 @@ std::vector<AnalysisDescription> read_analyses(TomlReader& root, const StudyFold
   for (TomlReader& reader : root.tables("analysis")) {
     AnalysisDescription analysis;
     analysis.where = reader.where();
-    // The name of a file in the folder of results.
-    const auto is_unfit = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '.'; };
     analysis.name = reader.text("name");
     reader.rename(fmt::format("analysis \"{}\"", analysis.name));
-    if (analysis.name.empty() || analysis.name == "results" ||
-        std::any_of(analysis.name.begin(), analysis.name.end(), is_unfit))
-      throw InvalidInput(reader.where("name"), fmt::format("the analysis name \"{}\" becomes a file name: it cannot be "
-                                                           "empty or \"results\", or hold a slash, a dot or a control "
-                                                           "character",
-                                                           analysis.name));
-    for (const auto& other : analyses)
-      if (other.name == analysis.name)
-        throw InvalidInput(reader.where("name"), fmt::format("two analyses are called \"{}\"; the first is on line {}",
-                                                             analysis.name, other.where.line));
+    require_name(analysis.name, analyses, reader.where("name"));
     const std::string type = reader.text("type");
     (void)reader.optional_word("type", known);
     if (type == "transient")

@@ -1,5 +1,6 @@
 #include <rubato/io/read_parts.hpp>
 #include <rubato/io/read_study.hpp>
+#include <rubato/io/toml_limits.hpp>
 
 #include <fmt/format.h>
 
@@ -116,6 +117,7 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
                                         const std::filesystem::path& path, SourceFiles* files) {
   const StudyFolder folder(path, files);
   require_text(text, name);
+  require_moderate_keys(text, name);
   toml::table table;
   try {
     table = toml::parse(text, name);

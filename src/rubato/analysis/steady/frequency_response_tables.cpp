@@ -58,6 +58,10 @@ void add_amplitudes(const std::vector<Observed>& observed, std::vector<results::
 
 std::vector<std::string> reserved_columns() {
   return {"point",
+          "linear",
+          "waveforms",
+          "bands",
+          "sample",
           "coordinate",
           "rotation",
           "observed",
