@@ -1,7 +1,9 @@
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/steady/harmonic_balance.hpp>
+#include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
+#include "support/brick_cantilever.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -251,6 +253,75 @@ TEST(HarmonicBalance, SaysThatAResonanceWithoutDampingIsUnbounded) {
   EXPECT_EQ(r.status, SteadyStatus::converged);
   EXPECT_TRUE(std::isfinite(r.amplitude[0]));
   EXPECT_NEAR(r.input_work, r.dissipated[0], 1e-9);
+}
+
+// A slender solid turns small differences of large forces into its motion: what it leaves of the load is round-off of
+// 2e10 N/m times 0.01 m, and no sign of a resonance. First natural frequency 34.5 rad/s, damping Rayleigh's.
+TEST(HarmonicBalance, IsFiniteOnASlenderSolidWithDamping) {
+  testing::BrickCantilever blade;
+  blade.along = 100;
+  auto parts = blade.parts();
+  const Index tip = blade.deflection(100), middle = blade.deflection(50);
+  parts.sliders = {{"stuck", middle, ground, 100.0, 1e9}};
+  for (const double w : {18.8, 34.5, 56.5, 94.2}) {
+    parts.loads = system::Loads({testing::harmonic(tip, 1.0, w)});
+    const system::LocallyNonlinear stuck(parts);
+    const SteadyResponse r = respond(stuck, observing({tip}));
+    LinearResponse limit = stuck_limit(stuck, observing({tip}));
+    SteadyResponse linear;
+    limit.solve(excitation_of(stuck), SteadyStart::unloaded, linear);
+    ASSERT_EQ(linear.status, SteadyStatus::converged);
+    // Round-off of the solid itself, eps |K| |x| / |f| = 2e-16 * 2e10 N/m * 0.01 m / N, times what that moves.
+    EXPECT_NEAR(r.amplitude[0], linear.amplitude[0], 1e-5 * linear.amplitude[0]) << w;
+  }
+  // Where it slips: against the modes of the same structure below 300 rows.
+  testing::BrickCantilever small;
+  small.across = 1;
+  small.along = 24;
+  auto few = small.parts();
+  few.sliders = {{"slips", small.deflection(12), ground, 1e3, 0.3}};
+  few.loads = system::Loads({testing::harmonic(small.deflection(24), 1.0, 135.0)});
+  ASSERT_LE(small.rows(), 300);
+  const SteadyResponse modes = respond(system::LocallyNonlinear(few), observing({small.deflection(24)}), 1e-4);
+  EXPECT_GT(modes.slip_share[0], 0.0);
+  // One mass more, loosely tied and without load, makes it too large for modes.
+  const Index n = small.rows(), more = 301 - n;
+  const auto extended = [&](SparseMatrix& matrix, double diagonal) {
+    matrix.conservativeResize(n + more, n + more);
+    for (Index i = n; i < n + more; ++i) matrix.insert(i, i) = diagonal;
+  };
+  extended(few.mass, 1.0);
+  extended(few.damping, 1.0);
+  extended(few.stiffness, 1e4);
+  few.coordinates.clear();
+  for (Index i = 0; i < n + more; ++i) few.coordinates.push_back("x" + std::to_string(i + 1));
+  const SteadyResponse factor = respond(system::LocallyNonlinear(few), observing({small.deflection(24)}), 1e-4);
+  EXPECT_NEAR(factor.amplitude[0], modes.amplitude[0], 2e-4 * modes.amplitude[0]);
+}
+
+// A chain of 400 at its first natural frequency, without damping: a slider of 1 mN does not hold back a load of 1 N,
+// one of 10 N does. At an antinode friction takes 4 b limit, the load gives pi b.
+TEST(HarmonicBalance, SaysThatALargeStructureInResonanceIsUnbounded) {
+  const Index n = 401;
+  const double w = 2.0 * std::sin(std::numbers::pi / (2.0 * (static_cast<double>(n) + 1.0)));
+  for (const double limit : {1e-3, 10.0}) {
+    const auto chain = testing::chain(n, 1, limit);
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = chain.mass();
+    parts.damping = 0.0 * chain.damping();
+    parts.stiffness = chain.stiffness();
+    parts.sliders = chain.sliders();
+    parts.loads = system::Loads({testing::harmonic(n / 2, 1.0, w)});
+    parts.coordinates = chain.coordinates();
+    const system::LocallyNonlinear system(std::move(parts));
+    HarmonicBalanceSolver solver(system, observing({n / 2}));
+    SteadyResponse r;
+    solver.solve(excitation_of(system), SteadyStart::unloaded, r);
+    EXPECT_EQ(r.status == SteadyStatus::unbounded, limit < 1.0) << limit;
+    if (limit > 1.0) {
+      EXPECT_EQ(r.status, SteadyStatus::converged);
+    }
+  }
 }
 
 // A mass that only a slider ties to the ground has no static stiffness of its own: it rests where the slider leaves it.

@@ -189,6 +189,25 @@ TEST(TimeMarching, SaysThatAnUndampedResonanceGrowsWithoutBound) {
   }
 }
 
+// A contact of 1e5 k sticks for most of the period and rings at 316 rad/s where it comes to stick: the march may
+// wander, but c = 0.1 bounds it. The periodic orbit has the amplitude 0.91939.
+TEST(TimeMarching, DoesNotCallAStiffContactInfinite) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = testing::sparse(0.1 * Matrix::Identity(1, 1));
+  parts.stiffness = parts.mass;
+  parts.sliders = {{"contact", 0, ground, 1e5, 0.1}};
+  parts.loads = system::Loads({harmonic(0, 1.0, 0.1)});
+  parts.coordinates = {"mass"};
+  const system::LocallyNonlinear system(std::move(parts));
+  const auto response = response_of(system, with_method("generalized_alpha"), observing({0}));
+  EXPECT_NE(response.status, SteadyStatus::unbounded);
+  EXPECT_TRUE(std::isfinite(response.amplitude[0]));
+  if (response.status == SteadyStatus::converged) {
+    EXPECT_NEAR(response.amplitude[0], 0.91939, 1e-3);
+  }
+}
+
 TEST(TimeMarching, FollowsPointsSideBySideAsOneByOne) {
   const auto system = damper_model(10.0, 7.5, -8.0);
   const std::array<double, 9> preloads = {0, 5, 10, 25, 50, 100, 200, 500, 1000};

@@ -57,8 +57,7 @@ SparseMatrix stiffness_with(const system::LocallyNonlinear& system, const StuckS
   return SparseMatrix(system.stiffness() + springs_of(system, stuck));
 }
 
-AssembledStiffness::AssembledStiffness(const system::LocallyNonlinear& system, const StuckSliders& stuck) {
-  const SparseMatrix springs = springs_of(system, stuck);
+AssembledStiffness::AssembledStiffness(const system::LocallyNonlinear& system, const SparseMatrix& springs) {
   const SparseMatrix pattern = joint_pattern({&system.stiffness(), &springs, &system.mass(), &system.damping()});
   stiffness_ = on_pattern(system.stiffness(), pattern);
   springs_ = on_pattern(springs, pattern);

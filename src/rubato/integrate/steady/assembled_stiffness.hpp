@@ -15,13 +15,14 @@ SparseMatrix springs_of(const system::LocallyNonlinear& system, const StuckSlide
 /// K plus kT of the stuck sliders.
 SparseMatrix stiffness_with(const system::LocallyNonlinear& system, const StuckSliders& stuck);
 
-/// Z(w) = K + held sum of kT b b^T (of the stuck sliders) - w^2 M + i w C, entry by entry on the joint symmetric
+/// Z(w) = K + held S - w^2 M + i w C, S springs such as those of stuck sliders, entry by entry on the joint symmetric
 /// pattern of its terms, diagonal included.
 class AssembledStiffness {
  public:
   using SparseComplexMatrix = Eigen::SparseMatrix<Complex>;
 
-  AssembledStiffness(const system::LocallyNonlinear& system, const StuckSliders& stuck);
+  /// @param springs  S [n x n] [N/m]
+  AssembledStiffness(const system::LocallyNonlinear& system, const SparseMatrix& springs);
 
   Index size() const { return matrix_.rows(); }
   /// @param angular_frequency  w >= 0 [rad/s]
@@ -31,6 +32,7 @@ class AssembledStiffness {
   void assemble_sizes(SparseMatrix& sizes) const;
 
   const SparseMatrix& pattern() const { return stiffness_; }
+  const SparseMatrix& damping() const { return damping_; }
   const SparseComplexMatrix& matrix() const { return matrix_; }
   SparseComplexMatrix& matrix() { return matrix_; }
   /// The diagonal of the sizes [n]: what a pivot is the sum of.

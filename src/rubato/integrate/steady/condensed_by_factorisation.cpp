@@ -1,14 +1,12 @@
-#include <rubato/integrate/steady/assembled_stiffness.hpp>
 #include <rubato/integrate/steady/condensed_structure_routes.hpp>
-#include <rubato/numerics/complex_ldlt.hpp>
+#include <rubato/integrate/steady/dynamic_stiffness.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <Eigen/SparseLU>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
@@ -54,42 +52,44 @@ class DenseFactorisation final : public CondensedStructure::Route {
     position = out;
   }
 
-  std::vector<CondensedStructure::Resonance> resonances(double w) override {
-    std::vector<CondensedStructure::Resonance> found;
-    factorise(w, 0.0);
-    if (!is_singular_) return found;
-    for (const Index direction : singular_directions()) {
-      ComplexVector phi = svd_.matrixV().col(direction).cwiseProduct(scale_);
-      Index largest;
-      phi.cwiseAbs().maxCoeff(&largest);
-      phi /= phi[largest];
-      const Vector real = phi.real();
-      found.push_back({columns_.sliders.transpose() * real, columns_.loads.transpose() * real});
-    }
-    return found;
-  }
-
  private:
   // S Z S with S = 1/sqrt(|K_ii| + held + w^2 M_ii), so that metres and radians weigh the same.
   void factorise(double w, double held) {
     ComplexMatrix z = assembled_stiffness(stiffness_, mass_, damping_, w);
     if (held > 0.0)
-      z += (columns_.sliders * (held * columns_.slider_stiffness).asDiagonal() * columns_.sliders.transpose())
+      z += (columns_.sliders * (held * columns_.holding_stiffness).asDiagonal() * columns_.sliders.transpose())
                .cast<Complex>();
+    sizes_ = stiffness_.cwiseAbs() + (w * w) * mass_.cwiseAbs();
     scale_ = (z.diagonal().cwiseAbs() + (w * w) * mass_.diagonal()).cwiseSqrt();
     for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
     z = scale_.asDiagonal() * z * scale_.asDiagonal();
     factor_.compute(z);
     condition_ = factor_.rcond();
     is_singular_ = !(condition_ > singular);
-    if (is_singular_) svd_.compute(z, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (!is_singular_) return;
+    dynamic_ = z;
+    frequency_ = w;
+    svd_.compute(z, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    is_singular_ = !singular_directions().empty();
+  }
+
+  // Whether nothing but round-off of its terms resists a direction: K - w^2 M and C each by itself, since stiff parts
+  // hide the digits of soft ones and not those of their dampers.
+  bool is_free(Index direction) const {
+    const ComplexVector phi = svd_.matrixV().col(direction);
+    const ComplexVector x = phi.cwiseProduct(scale_);
+    const Vector moduli = x.cwiseAbs();
+    const double size = moduli.dot(sizes_ * moduli), dampers = moduli.dot(damping_.cwiseAbs() * moduli);
+    const double resisted = frequency_ * std::abs(x.dot(damping_ * x));
+    return std::abs(phi.dot(dynamic_ * phi).real()) <= round_off_of_terms * size &&
+           resisted <= std::max(round_off_of_terms * frequency_ * dampers, 1e-3 * round_off_of_terms * size);
   }
 
   std::vector<Index> singular_directions() const {
     std::vector<Index> directions;
     const Vector& values = svd_.singularValues();
     for (Index i = 0; i < values.size(); ++i)
-      if (!(values[i] > 10.0 * singular * values[0])) directions.push_back(i);
+      if (!(values[i] > 10.0 * singular * values[0]) && is_free(i)) directions.push_back(i);
     return directions;
   }
 
@@ -109,32 +109,31 @@ class DenseFactorisation final : public CondensedStructure::Route {
     }
     ComplexMatrix shares = svd_.matrixU().adjoint() * scaled;
     const Vector& values = svd_.singularValues();
-    for (Index i = 0; i < values.size(); ++i)
-      shares.row(i) *= values[i] > 10.0 * singular * values[0] ? 1.0 / values[i] : 0.0;
+    for (Index i = 0; i < values.size(); ++i) shares.row(i) *= values[i] > 0.0 ? 1.0 / values[i] : 0.0;
+    for (const Index direction : singular_directions()) shares.row(direction).setZero();
     position = scale_.asDiagonal() * ComplexMatrix(svd_.matrixV() * shares);
   }
 
   const Columns& columns_;
-  Matrix mass_, damping_, stiffness_;
+  Matrix mass_, damping_, stiffness_, sizes_;
   Vector scale_;
+  ComplexMatrix dynamic_;  // scaled, where it may be singular
+  double frequency_ = 0.0;
   Eigen::PartialPivLU<ComplexMatrix> factor_;
   Eigen::JacobiSVD<ComplexMatrix> svd_;
   double condition_ = 0.0;
   bool is_singular_ = false;
 };
 
-/// L D L^T of the sparse complex symmetric Z without pivoting, the rows of the columns last, judged by the residual of
-/// one combination of the columns; where that is too large, LU with pivoting.
+/// DynamicStiffness, the rows of the columns last: its factor condenses all columns at once without substituting
+/// backwards. One combination of them is solved with refinement and says how far Z determines the answer; where the
+/// condensed columns do not agree with it, each is solved by itself.
 class SparseFactorisation final : public CondensedStructure::Route {
  public:
-  explicit SparseFactorisation(const Columns& columns)
-      : columns_(columns),
-        stiffness_(columns.system, StuckSliders(static_cast<std::size_t>(columns.system.slider_count()), true)) {
-    set_loads();
-  }
+  explicit SparseFactorisation(const Columns& columns) : columns_(columns) { set_loads(); }
 
   void set_loads() override {
-    const Index n = stiffness_.size(), driven = columns_.driven();
+    const Index n = columns_.system.size(), driven = columns_.driven();
     Matrix all = Matrix::Zero(n, columns_.count());
     all.leftCols(driven) << columns_.sliders, columns_.loads;
     for (std::size_t i = 0; i < columns_.observed.size(); ++i) {
@@ -155,75 +154,70 @@ class SparseFactorisation final : public CondensedStructure::Route {
     for (int row = 0; row < n; ++row)
       if (is_last[static_cast<std::size_t>(row)]) last.push_back(row);
     combination_ = Vector::LinSpaced(driven, 1.0, 2.0);
-    combined_ = all.leftCols(driven) * combination_;
-    factor_.analyse(stiffness_.pattern(), last);
+    combined_ = (all.leftCols(driven) * combination_).cast<Complex>();
+    stiffness_.emplace(columns_.system, columns_.holding_springs(), last);
   }
 
   Outcome condense(double w, double held, ComplexMatrix& g) override {
-    stiffness_.assemble(w, held);
-    factor_.factorise(stiffness_.matrix(), stiffness_.scale());
-    ComplexMatrix position = combined_.cast<Complex>();
-    factor_.solve(position);
-    if (is_solved(combined_.cast<Complex>(), position)) {
-      factor_.condense(sparse_, condensed_);
-      g = condensed_.leftCols(columns_.driven());
-      if (agrees(g, position)) return Outcome::regular;
-    }
-    Matrix driven(columns_.sliders.rows(), columns_.driven());
-    driven << columns_.sliders, columns_.loads;
-    if (!solve_with_pivoting(driven.cast<Complex>(), position))
+    stiffness_->factorise(w, held);
+    ComplexVector position;
+    const StiffnessSolution solution = stiffness_->solve(combined_, position);
+    const double size = largest(position), doubt = largest(solution.uncertainty);
+    const double uncertainty = size > 0.0 ? doubt / size : 0.0;
+    const bool is_singular = !(uncertainty <= undetermined);
+    if (is_singular && !solution.is_damped)
       return held == 0.0 && columns_.sliders.cols() > 0 ? Outcome::sliders_needed : Outcome::resonance;
-    g = columns_.project(position);
-    return Outcome::regular;
+    if (stiffness_->condense(sparse_, condensed_)) {
+      g = condensed_.leftCols(columns_.driven());
+      if (!agrees(g, position, std::max(solved * size, doubt))) solve_each(g);
+    } else {
+      solve_each(g);
+    }
+    return is_singular || uncertainty > held_is_better ? Outcome::near_resonance : Outcome::regular;
   }
 
   void expand(double w, double held, const ComplexVector& forces, ComplexVector& position) override {
-    const ComplexMatrix load = columns_.sliders.cast<Complex>() * forces.head(columns_.sliders.cols()) +
-                               columns_.loads.cast<Complex>() * forces.tail(columns_.loads.cols());
-    stiffness_.assemble(w, held);
-    factor_.factorise(stiffness_.matrix(), stiffness_.scale());
-    ComplexMatrix out = load;
-    factor_.solve(out);
-    if (is_solved(load, out) || solve_with_pivoting(load, out))
-      position = out;
-    else
-      position.setConstant(load.rows(), Complex(std::numeric_limits<double>::infinity(), 0.0));
+    stiffness_->factorise(w, held);
+    stiffness_->solve(columns_.sliders.cast<Complex>() * forces.head(columns_.sliders.cols()) +
+                          columns_.loads.cast<Complex>() * forces.tail(columns_.loads.cols()),
+                      position);
   }
 
  private:
-  bool solve_with_pivoting(const ComplexMatrix& load, ComplexMatrix& position) const {
-    Eigen::SparseLU<Eigen::SparseMatrix<Complex>> pivoting;
-    pivoting.compute(stiffness_.matrix());
-    if (pivoting.info() != Eigen::Success) return false;
-    position = pivoting.solve(load);
-    return is_solved(load, position);
+  static double largest(const ComplexVector& x) {
+    return x.size() > 0 ? std::sqrt(x.cwiseAbs2().maxCoeff()) : 0.0;  // squares: moduli cost more than the solution
   }
 
-  // A small residual against a bounded answer: a singular matrix leaves one of the two unfulfilled.
-  bool is_solved(const ComplexMatrix& load, const ComplexMatrix& position) const {
-    // Squares: the moduli of a million entries cost more than the solution.
-    const auto largest = [](const auto& values) { return std::sqrt(values.cwiseAbs2().maxCoeff()); };
-    const double given = largest(load), residual = largest(load - stiffness_.matrix() * position);
-    const double size = largest(stiffness_.matrix().coeffs()) * largest(position);
-    return residual <= solved * given && singular * size <= given;
+  void solve_each(ComplexMatrix& g) {
+    const Index driven = columns_.driven();
+    ComplexMatrix positions(columns_.sliders.rows(), driven);
+    ComplexVector position;
+    for (Index c = 0; c < driven; ++c) {
+      const Index m = columns_.sliders.cols();
+      const ComplexVector force = (c < m ? columns_.sliders.col(c) : columns_.loads.col(c - m)).cast<Complex>();
+      stiffness_->solve(force, position);
+      positions.col(c) = position;
+    }
+    g = columns_.project(positions);
   }
 
   // The condensed columns answer to the combination as the solution does.
-  bool agrees(const ComplexMatrix& g, const ComplexMatrix& position) const {
+  bool agrees(const ComplexMatrix& g, const ComplexVector& position, double allowed) const {
     const ComplexVector seen_of_it = columns_.project(position), summed = g * combination_.cast<Complex>();
-    return (seen_of_it - summed).cwiseAbs().maxCoeff() <= solved * position.cwiseAbs().maxCoeff();
+    return largest(seen_of_it - summed) <= allowed;
   }
 
   static constexpr double solved = 1e-9;
+  // Uncertainty from which springs put into Z may give better digits: static answers of fine meshes have 1e-9 or so.
+  static constexpr double held_is_better = 1e-6;
   static constexpr int most_own_rows = 8;  // of a column, to be eliminated last
 
   const Columns& columns_;
-  AssembledStiffness stiffness_;
-  SparseMatrix sparse_;  ///< P [n x p]
-  Vector combination_;   ///< of the driven columns
-  Vector combined_;      ///< [n]
+  std::optional<DynamicStiffness> stiffness_;
+  SparseMatrix sparse_;     ///< P [n x p]
+  Vector combination_;      ///< of the driven columns
+  ComplexVector combined_;  ///< [n]
   ComplexMatrix condensed_;
-  numerics::ComplexLdlt factor_;
 };
 
 }  // namespace

@@ -75,15 +75,6 @@ class RealModes final : public CondensedStructure::Route {
     position = shapes_ * modal;
   }
 
-  std::vector<CondensedStructure::Resonance> resonances(double w) override {
-    std::vector<CondensedStructure::Resonance> found;
-    for (Index r = 0; r < squares_.size(); ++r)
-      if (!(std::hypot(squares_[r] - w * w, w * damping_[r]) > singular * std::max(squares_[r], w * w)))
-        found.push_back({seen_.col(r).head(columns_.sliders.cols()),
-                         seen_.col(r).segment(columns_.sliders.cols(), columns_.loads.cols())});
-    return found;
-  }
-
   double highest_frequency() const override {
     double square = highest_;
     for (Index j = 0; j < columns_.sliders.cols(); ++j)

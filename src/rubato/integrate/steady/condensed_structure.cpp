@@ -1,5 +1,7 @@
 #include <rubato/integrate/steady/condensed_structure_routes.hpp>
 
+#include <algorithm>
+
 namespace rubato::integrate {
 namespace {
 
@@ -7,17 +9,30 @@ constexpr Index most_state_space = 60;  // coordinates: the eigenproblem takes 2
 constexpr Index most_dense = 300;       // coordinates, where C is sparse
 constexpr double full = 0.05;           // part of C that is not zero, from which it counts as a full matrix
 
+// kT, or what the structure itself has at the ends of the slider, or anywhere: stiffer springs would take the digits of
+// the rest of Z.
+double holding_stiffness_of(const model::Slider& slider, const Vector& diagonal) {
+  double of_structure = 0.0;
+  for (const Index end : {slider.first, slider.second})
+    if (end != ground) of_structure = std::max(of_structure, diagonal[end]);
+  if (!(of_structure > 0.0) && diagonal.size() > 0) of_structure = diagonal.maxCoeff();
+  return of_structure > 0.0 ? std::min(slider.stiffness, of_structure) : slider.stiffness;
+}
+
 }  // namespace
 
 CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
                                        const std::vector<SteadyRequest::Observed>& observed) {
   const Index n = system.size(), m = system.slider_count();
-  columns_ = std::make_unique<Columns>(Columns{system, Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
+  columns_ =
+      std::make_unique<Columns>(Columns{system, Vector(m), Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
+  const Vector diagonal = system.stiffness().diagonal();
   for (Index i = 0; i < m; ++i) {
     const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
     columns_->slider_stiffness[i] = slider.stiffness;
     if (slider.first != ground) columns_->sliders(slider.first, i) += 1.0;
     if (slider.second != ground) columns_->sliders(slider.second, i) -= 1.0;
+    columns_->holding_stiffness[i] = holding_stiffness_of(slider, diagonal);
   }
   const auto entries = static_cast<double>(system.damping().nonZeros());
   const bool is_small = n <= most_dense || entries > full * static_cast<double>(n) * static_cast<double>(n);
@@ -33,6 +48,8 @@ Index CondensedStructure::slider_count() const { return columns_->sliders.cols()
 Index CondensedStructure::load_count() const { return columns_->loads.cols(); }
 Index CondensedStructure::observed_count() const { return static_cast<Index>(columns_->observed.size()); }
 
+const Vector& CondensedStructure::holding_stiffness() const { return columns_->holding_stiffness; }
+
 void CondensedStructure::set_loads(const Matrix& patterns) {
   columns_->loads = patterns;
   if (route_) route_->set_loads();
@@ -46,10 +63,6 @@ CondensedStructure::Outcome CondensedStructure::condense(double w, double held, 
 
 void CondensedStructure::expand(double w, double held, const ComplexVector& forces, ComplexVector& position) {
   (route_ && held == 0.0 ? *route_ : *factorisation_).expand(w, held, forces, position);
-}
-
-std::vector<CondensedStructure::Resonance> CondensedStructure::resonances(double w) {
-  return (route_ ? *route_ : *factorisation_).resonances(w);
 }
 
 double CondensedStructure::highest_frequency() const {

@@ -7,11 +7,17 @@ namespace rubato::integrate {
 
 struct CondensedStructure::Columns {
   const system::LocallyNonlinear& system;
-  Vector slider_stiffness;  ///< [m]
-  Matrix sliders, loads;    ///< B [n x m], E [n x e]
+  Vector slider_stiffness;   ///< [m]
+  Vector holding_stiffness;  ///< of the springs that may be put into Z [m]
+  Matrix sliders, loads;     ///< B [n x m], E [n x e]
   std::vector<SteadyRequest::Observed> observed;
   Index driven() const { return sliders.cols() + loads.cols(); }  ///< columns that carry forces
   Index count() const { return driven() + static_cast<Index>(observed.size()); }
+  /// B diag(holding_stiffness) B^T
+  SparseMatrix holding_springs() const {
+    const SparseMatrix columns = sliders.sparseView();
+    return columns * holding_stiffness.asDiagonal() * SparseMatrix(columns.transpose());
+  }
   /// P^T x for x [n x any]
   template <class Dense>
   auto project(const Dense& x) const {
@@ -33,7 +39,6 @@ struct CondensedStructure::Route {
   virtual void set_loads() = 0;
   virtual Outcome condense(double w, double held, ComplexMatrix& receptance) = 0;
   virtual void expand(double w, double held, const ComplexVector& column_forces, ComplexVector& position) = 0;
-  virtual std::vector<Resonance> resonances(double) { return {}; }
   virtual double highest_frequency() const { return 0.0; }
 };
 

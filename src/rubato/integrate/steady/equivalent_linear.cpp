@@ -3,7 +3,6 @@
 #include <rubato/integrate/steady/assembled_stiffness.hpp>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -42,60 +41,6 @@ ComplexMatrix dynamic_stiffness(const system::LocallyNonlinear& system, double w
 }
 
 }  // namespace
-
-namespace {
-
-constexpr double round_off = 1e-13;
-
-// The force that the sliders can hold against a motion: the sum of |b^T shape| limit.
-double friction_along(const system::LocallyNonlinear& system, const Excitation& excitation,
-                      const ComplexVector& shape) {
-  double taken = 0.0;
-  for (Index i = 0; i < system.slider_count(); ++i) {
-    const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
-    const Complex u = (slider.first == ground ? Complex(0.0) : shape[slider.first]) -
-                      (slider.second == ground ? Complex(0.0) : shape[slider.second]);
-    taken += std::abs(u) * excitation.limits[i];
-  }
-  return taken;
-}
-
-// A constant load on a motion that neither springs nor dampers resist, and that friction cannot hold.
-bool is_pushed_away(const system::LocallyNonlinear& system, const Excitation& excitation) {
-  if (excitation.constant.size() == 0 || excitation.constant.isZero(0.0)) return false;
-  const Matrix resistance = Matrix(system.stiffness()) + excitation.angular_frequency * Matrix(system.damping());
-  const Eigen::JacobiSVD<Matrix> values(resistance, Eigen::ComputeFullV);
-  for (Index k = 0; k < values.singularValues().size(); ++k) {
-    if (values.singularValues()[k] > round_off * resistance.norm()) continue;
-    const Vector shape = values.matrixV().col(k);
-    const double given = std::abs(shape.dot(excitation.constant));
-    if (given > round_off * excitation.constant.norm() &&
-        given > friction_along(system, excitation, shape.cast<Complex>()))
-      return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-bool is_driven_beyond_friction(const system::LocallyNonlinear& system, const Excitation& excitation) {
-  if (is_pushed_away(system, excitation)) return true;
-  const ComplexVector none = ComplexVector::Zero(system.slider_count());
-  return std::any_of(excitation.harmonics.begin(), excitation.harmonics.end(), [&](const LoadHarmonic& load) {
-    const double w = load.order * excitation.angular_frequency;
-    // Against the terms that cancel at a resonance, not against what is left of them.
-    const double terms = Matrix(system.stiffness()).norm() + w * w * Matrix(system.mass()).norm();
-    const Eigen::JacobiSVD<ComplexMatrix> values(dynamic_stiffness(system, w, none), Eigen::ComputeFullV);
-    for (Index k = 0; k < values.singularValues().size(); ++k) {
-      if (values.singularValues()[k] >= round_off * terms) continue;
-      const ComplexVector shape = values.matrixV().col(k);
-      const double given = std::numbers::pi * std::abs((shape.transpose() * load.amplitude)(0));
-      const double taken = 4.0 * friction_along(system, excitation, shape);
-      if (given > round_off * std::numbers::pi * load.amplitude.norm() && given >= taken) return true;
-    }
-    return false;
-  });
-}
 
 bool equivalent_linear_state(const system::LocallyNonlinear& system, const Excitation& excitation, Vector& q, Vector& v,
                              Vector& slider_force) {

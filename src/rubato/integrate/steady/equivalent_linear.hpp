@@ -14,9 +14,4 @@ namespace rubato::integrate {
 bool equivalent_linear_state(const system::LocallyNonlinear& system, const Excitation& excitation, Vector& q, Vector& v,
                              Vector& slider_force);
 
-/// Whether the loads meet a resonance without damping of the structure without sliders, and give it more than friction
-/// can take: of a motion with the shape phi and the amplitude a, pi a |phi^T f| a period against at most
-/// 4 a sum_j |b_j^T phi| limit_j, with b_j^T x the displacement of slider j. The motion grows for ever then.
-bool is_driven_beyond_friction(const system::LocallyNonlinear& system, const Excitation& excitation);
-
 }  // namespace rubato::integrate

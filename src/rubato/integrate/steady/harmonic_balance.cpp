@@ -24,7 +24,7 @@ HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonli
     : system(s), request(std::move(r)), options(o), structure(s, request.observed), patterns(s.size(), 0) {
   stiffness.resize(s.slider_count());
   for (Index j = 0; j < stiffness.size(); ++j) stiffness[j] = s.sliders()[static_cast<std::size_t>(j)].stiffness;
-  equations.emplace_back(stiffness);
+  equations.emplace_back(stiffness, structure.holding_stiffness());
   highest_frequency = structure.highest_frequency();
   forget();
 }
@@ -93,9 +93,9 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   for (bool is_first = true;; is_first = false) {
     const Orders orders{stride, count};
     const int probes = s.orders_to_probe(excitation, orders);
-    s.is_unbounded = !s.condense(excitation, stride, count + probes, !is_symmetric);
-    if (s.is_unbounded) {
-      if (!s.walks(excitation, start, response)) s.fill_unbounded(response);
+    s.has_answer = s.condense(excitation, stride, count + probes, !is_symmetric);
+    if (!s.has_answer) {
+      if (!s.walks(excitation, start, response)) s.fill_without_answer(excitation, response);
       return;
     }
     if (is_first)
@@ -138,7 +138,7 @@ Waveform HarmonicBalanceSolver::waveform(int points) const {
   wave.time = Vector::LinSpaced(points, 0.0, s.last.period() * (points - 1) / points);
   wave.position = wave.velocity = Matrix::Zero(n, points);
   wave.slider_force = wave.displacement = Matrix::Zero(m, points);
-  if (s.is_unbounded) {
+  if (!s.has_answer) {
     wave.position.setConstant(infinity);
     wave.velocity.setConstant(infinity);
     return wave;

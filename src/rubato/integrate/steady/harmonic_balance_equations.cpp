@@ -57,12 +57,12 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
     const Complex* const u = series.coefficients.data() + j * count;
     loop.pass(stiffness_[j], limits_[j], series.mean[j], series.orders, u, offsets_[j]);
     for (int i = 0; i < count; ++i) {
-      const double held = harmonics[static_cast<std::size_t>(i) + 1].held * stiffness_[j];
+      const double held = harmonics[static_cast<std::size_t>(i) + 1].held * holding_[j];
       force_(i, j) = loop.force(series.orders.at(i)) - held * u[i];
       displacement_ = std::max(displacement_, std::abs(u[i].real()) + std::abs(u[i].imag()));
     }
     if (series.has_mean) {
-      mean_force_[j] = loop.mean_force() - harmonics[0].held * stiffness_[j] * series.mean[j];
+      mean_force_[j] = loop.mean_force() - harmonics[0].held * holding_[j] * series.mean[j];
       displacement_ = std::max(displacement_, std::abs(series.mean[j]));
     }
   }
@@ -109,7 +109,7 @@ void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
         Complex by_real, by_imaginary;
         loop.derivative(series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
         if (i == l) {
-          const double held = harmonics[static_cast<std::size_t>(i) + 1].held * stiffness_[j];
+          const double held = harmonics[static_cast<std::size_t>(i) + 1].held * holding_[j];
           by_real -= held;
           by_imaginary -= Complex(0.0, held);
         }
@@ -118,7 +118,7 @@ void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
       }
     if (!series.has_mean) continue;
     columns_.col(from).setZero();
-    by_mean_[from] = loop.mean_derivative() - harmonics[0].held * stiffness_[j];
+    by_mean_[from] = loop.mean_derivative() - harmonics[0].held * holding_[j];
     for (int l = 0; l < count; ++l)
       loop.mean_derivative(series.orders.at(l), by_mean_[from + 1 + 2 * l], by_mean_[from + 2 + 2 * l]);
   }

@@ -29,7 +29,7 @@ struct SliderSeries {
   void resize(const Orders& new_orders, bool with_mean, Index sliders);  ///< keeps what both have
 };
 
-/// U_k - U_k(linear) + R_k (F_k(U) - held kT U_k) = 0 for the sliders that have a limit, and Newton's method for it.
+/// U_k - U_k(linear) + R_k (F_k(U) - held h U_k) = 0 for the sliders that have a limit, and Newton's method for it.
 ///
 /// The Jacobian 1 + R dF is that of all unknowns, but its two factors are not: R joins the sliders of one order, dF the
 /// orders of one slider. A large one is therefore factorised seldom; the systems between are solved by products with
@@ -37,7 +37,8 @@ struct SliderSeries {
 /// then change few of its eigenvalues.
 class HarmonicBalanceEquations {
  public:
-  explicit HarmonicBalanceEquations(const Vector& stiffness) : stiffness_(stiffness) {
+  /// @param stiffness  kT of each slider   @param holding  h, of which a part may be held in Z [m] [N/m]
+  HarmonicBalanceEquations(const Vector& stiffness, const Vector& holding) : stiffness_(stiffness), holding_(holding) {
     loops_.resize(static_cast<std::size_t>(stiffness.size()));
   }
 
@@ -82,12 +83,12 @@ class HarmonicBalanceEquations {
     return (series.has_mean ? 1 : 0) + 2 * series.orders.count;
   }
 
-  Vector stiffness_;
+  Vector stiffness_, holding_;
   const std::vector<CondensedHarmonic>* harmonics_ = nullptr;
   Vector limits_, offsets_;
   std::vector<Index> active_;
   std::vector<HysteresisLoop> loops_;
-  ComplexMatrix force_;  ///< F_k - held kT U_k [count x m]
+  ComplexMatrix force_;  ///< F_k - held h U_k [count x m]
   Vector mean_force_;
   Vector residual_, step_, left_;
   double left_part_ = 0.0;

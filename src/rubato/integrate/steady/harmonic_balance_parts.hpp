@@ -3,6 +3,7 @@
 #include <rubato/integrate/steady/harmonic_balance.hpp>
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
+#include <rubato/integrate/steady/undamped_resonance.hpp>
 
 #include <optional>
 #include <utility>
@@ -23,7 +24,7 @@ struct HarmonicBalanceSolver::Implementation {
   void take_loads(const Excitation& excitation);
   bool condense(const Excitation& excitation, int stride, int places, bool with_mean);
   bool condense_one(CondensedHarmonic& harmonic, double angular_frequency, int order);
-  bool is_driven_beyond_friction(const Excitation& excitation, double angular_frequency, const ComplexVector& load);
+  bool is_driven_beyond_friction(const Excitation& excitation);
   int orders_to_probe(const Excitation& excitation, const Orders& orders) const;
   void predict(double angular_frequency, const Orders& orders, bool with_mean);
   bool newton(const Excitation& excitation, bool has_solution, SteadyResponse& response);
@@ -35,7 +36,7 @@ struct HarmonicBalanceSolver::Implementation {
   double truncation_error(int probes);
   void recover();
   void fill(const Excitation& excitation, SteadyResponse& response);
-  void fill_unbounded(SteadyResponse& response) const;
+  void fill_without_answer(const Excitation& excitation, SteadyResponse& response);
   bool walks(const Excitation& excitation, SteadyStart start, SteadyResponse& response);
   void load_on(int order, ComplexVector& load) const;
 
@@ -67,9 +68,10 @@ struct HarmonicBalanceSolver::Implementation {
   Vector observed_mean;
   ComplexMatrix left_out, forces_left_out, force_change;
   TurningPoints turning;
-  bool is_unbounded = false;
-  std::optional<bool> may_walk;             ///< springs leave a motion free that sliders see; nothing: not yet known
-  std::unique_ptr<PeriodicSolver> walking;  ///< the last point, where it drifts
+  bool has_answer = false;                     ///< of the point solved last
+  std::optional<UndampedResonance> resonance;  ///< made where it is asked for
+  std::optional<bool> may_walk;                ///< springs leave a motion free that sliders see; nothing: not yet known
+  std::unique_ptr<PeriodicSolver> walking;     ///< the last point, where it drifts
 };
 
 }  // namespace rubato::integrate

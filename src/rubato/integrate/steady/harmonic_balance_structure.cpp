@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 // The loads on the structure, and what it answers to them and to its sliders.
 namespace rubato::integrate {
 namespace {
 
-using std::numbers::pi;
 using Outcome = CondensedStructure::Outcome;
 
 constexpr Index most_patterns = 32;   // of loads, before those of old points are forgotten
@@ -85,13 +83,18 @@ bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harm
     harmonic.angular_frequency = -1.0;
     Outcome outcome = structure.condense(angular_frequency, 0.0, harmonic.receptance);
     if (outcome == Outcome::near_resonance || outcome == Outcome::sliders_needed) {
+      const ComplexMatrix alone = harmonic.receptance;
+      const bool is_usable_alone = outcome == Outcome::near_resonance;
       for (const double held : {held_part, 0.37 * held_part}) {
-        const Outcome with_springs = structure.condense(angular_frequency, held, harmonic.receptance);
+        outcome = structure.condense(angular_frequency, held, harmonic.receptance);
         harmonic.held = held;
-        outcome = with_springs;
-        if (with_springs == Outcome::regular) break;
+        if (outcome == Outcome::regular) break;
       }
-      if (outcome == Outcome::near_resonance) outcome = Outcome::regular;
+      if (is_usable_alone && outcome != Outcome::regular) {
+        harmonic.receptance = alone;
+        harmonic.held = 0.0;
+      }
+      if (is_usable_alone || outcome == Outcome::near_resonance) outcome = Outcome::regular;
     }
     if (outcome != Outcome::regular) return false;
     harmonic.angular_frequency = angular_frequency;
@@ -103,20 +106,9 @@ bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harm
   return true;
 }
 
-// Friction takes at most 4 |b^T phi| limit from a motion in a singular direction phi, each period and unit of
-// amplitude; the load gives pi |phi^T L|. More than that, and the amplitude grows for ever. A static load pushes with
-// |phi^T L| against |b^T phi| limit.
-bool HarmonicBalanceSolver::Implementation::is_driven_beyond_friction(const Excitation& excitation,
-                                                                      double angular_frequency,
-                                                                      const ComplexVector& load) {
-  for (const auto& direction : structure.resonances(angular_frequency)) {
-    const bool is_static = angular_frequency == 0.0;
-    const double given = (is_static ? 4.0 : pi) * std::abs((direction.loads.cast<Complex>().transpose() * load)(0));
-    const double taken = 4.0 * direction.sliders.cwiseAbs().dot(excitation.limits);
-    const double size = pi * direction.loads.norm() * load.norm();
-    if (given > 1e-12 * size && given >= taken) return true;
-  }
-  return false;
+bool HarmonicBalanceSolver::Implementation::is_driven_beyond_friction(const Excitation& excitation) {
+  if (!resonance) resonance.emplace(system);
+  return resonance->is_driven_beyond_friction(excitation);
 }
 
 bool HarmonicBalanceSolver::Implementation::condense(const Excitation& excitation, int stride, int places,
@@ -128,7 +120,7 @@ bool HarmonicBalanceSolver::Implementation::condense(const Excitation& excitatio
     const double w = order * excitation.angular_frequency;
     CondensedHarmonic& harmonic = harmonics[place];
     if (!condense_one(harmonic, w, order)) return false;
-    return !(harmonic.held > 0.0 && is_driven_beyond_friction(excitation, w, harmonic.load));
+    return !(harmonic.held > 0.0 && !harmonic.load.isZero(0.0) && is_driven_beyond_friction(excitation));
   };
   if (with_mean && !need(0, 0)) return false;
   for (int i = 0; i < places; ++i)

@@ -39,7 +39,7 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       const auto at = static_cast<std::size_t>(b);
       const Complex force = loop.force(k);
       loop.derivative(k, k, by_real[at], by_imaginary[at]);
-      const double held = harmonic.held * stiffness_[j];
+      const double held = harmonic.held * holding_[j];
       forces_left_out(place, j) = force;
       for (Index a = 0; a < m; ++a) {
         const Complex r = harmonic.receptance(active_[static_cast<std::size_t>(a)], j);
@@ -60,7 +60,7 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       const auto at = static_cast<std::size_t>(b);
       left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
       forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at] -
-                                   harmonic.held * stiffness_[j] * left_out(place, j);
+                                   harmonic.held * holding_[j] * left_out(place, j);
     }
   }
 
@@ -106,7 +106,7 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     for (int l = 0; l < count; ++l) {
       const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
-      force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * stiffness_[j] * Complex(re, im);
+      force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * holding_[j] * Complex(re, im);
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;
         loop.derivative(series.orders.at(i), series.orders.at(l), real, imaginary);

@@ -2,6 +2,7 @@
 #include <rubato/integrate/steady/fourier_series.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,9 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-// Where round-off of the matrices changes more than the third digit the response is that of a resonance without
-// damping: a frequency within about 1e-12 of it, relative, and damping ratios below that.
-constexpr double undetermined = 1e-3;
 
 template <class V>
 auto difference(const SteadyRequest::Observed& observed, const V& x) {
@@ -83,7 +81,9 @@ double LinearResponse::solve_order(int order, const ComplexVector& force, Comple
   doubt.uncertainty = std::move(solution.uncertainty);
   doubt.least = largest_of(doubt.uncertainty);
   // Written so that a solution that is not finite is a resonance too.
-  doubt.is_resonant = !(doubt.least <= undetermined * largest_of(x));
+  const bool is_determined = doubt.least <= undetermined * largest_of(x);
+  doubt.is_resonant = !is_determined && !solution.is_damped;
+  doubt.is_lost = !is_determined && solution.is_damped;
   doubt.least *= takes_no_part;
   return solution.residual;
 }
@@ -146,6 +146,9 @@ void LinearResponse::observe(const Excitation& excitation, SteadyResponse& respo
   }
   const bool is_unbounded = response.status == SteadyStatus::unbounded;
   response.error = is_unbounded ? infinity : largest > 0.0 ? largest_error / largest : 0.0;
+  const auto is_lost = [](const Doubt& doubt) { return doubt.is_lost; };
+  if (!is_unbounded && (is_lost(mean_doubt_) || std::any_of(doubts_.begin(), doubts_.end(), is_lost)))
+    response.status = SteadyStatus::not_converged;
   response.iterations = 1;
   // Works over a period T: f . v has the mean Re(conj(f) i k omega x) / 2, and T omega = 2 pi.
   for (std::size_t j = 0; j < harmonics_.size(); ++j) {

@@ -27,6 +27,7 @@ struct LinearSweep {
 ///
 /// A resonance without damping (within the round-off of the matrices) has the status `unbounded`: amplitudes and
 /// harmonics of what resonates are infinite, phases are no numbers. So is a static load on a body that nothing holds.
+/// Where dampers bound the motion and round-off of stiff parts hides it all the same, the status is `not_converged`.
 class LinearResponse final : public SteadySolver {
  public:
   /// @param stuck  of each slider [m]
@@ -49,6 +50,7 @@ class LinearResponse final : public SteadySolver {
     ComplexVector uncertainty;  // [n]; empty: exact
     double least = 0.0;         // smaller uncertainties are no part of a resonance
     bool is_resonant = false;
+    bool is_lost = false;  // damped, and yet round-off: stiff parts hide the digits of the soft ones
     double of(const SteadyRequest::Observed& observed) const;
     bool is_infinite(const SteadyRequest::Observed& observed, double value) const;
   };

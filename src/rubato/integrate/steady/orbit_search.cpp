@@ -108,20 +108,16 @@ class Lane {
     return std::nullopt;
   }
 
-  /// Without repetition after the last period: bounded, or growing without bound?
+  /// Without repetition after the last period: does it stay as large as it was?
   void conclude() {
     const std::size_t quarter = sizes_.size() / 4;
-    if (is_done || quarter < 8) return;
+    if (is_done || extrapolates_ || quarter < 8) return;
     const auto largest = [&](std::size_t part) {
       const auto from = sizes_.end() - static_cast<std::ptrdiff_t>((4 - part) * quarter);
       return *std::max_element(from, from + static_cast<std::ptrdiff_t>(quarter));
     };
-    const double second = largest(1), third = largest(2), last = largest(3);
-    constexpr double settled = 0.01, growing = 1.2;
-    if (last > growing * third && last - third > 0.9 * (third - second))
-      report.status = SteadyStatus::unbounded;
-    else if (!extrapolates_ && std::abs(last - third) <= settled * third)
-      report.status = SteadyStatus::quasi_periodic;
+    constexpr double settled = 0.01;
+    if (std::abs(largest(3) - largest(2)) <= settled * largest(2)) report.status = SteadyStatus::quasi_periodic;
   }
 
  private:

@@ -1,5 +1,5 @@
-#include <rubato/integrate/steady/equivalent_linear.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
+#include <rubato/integrate/steady/undamped_resonance.hpp>
 
 #include <Eigen/QR>
 
@@ -184,7 +184,7 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
         near_factors_ = true;
         if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
       }
-      if (is_driven_beyond_friction(system_, excitation)) {
+      if (UndampedResonance(system_).is_driven_beyond_friction(excitation)) {
         response.status = SteadyStatus::unbounded;
         return false;
       }

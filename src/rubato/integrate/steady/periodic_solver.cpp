@@ -1,6 +1,7 @@
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/steady/undamped_resonance.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <fmt/format.h>
@@ -134,23 +135,6 @@ void PeriodicSolver::take_start(const Excitation& excitation, SteadyStart start)
   half_ = excitation.is_half_wave_symmetric() && (wanted_offset_.array() == 0.0).all();
 }
 
-void PeriodicSolver::report_unbounded(SteadyResponse& response) const {
-  const auto observed = static_cast<Index>(request_.observed.size());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  response.status = SteadyStatus::unbounded;
-  response.residual = response.error = infinity;
-  response.amplitude = response.rms = Vector::Constant(observed, infinity);
-  response.velocity_amplitude = response.acceleration_amplitude =
-      Vector::Constant(request_.rates ? observed : 0, infinity);
-  response.mean = Vector::Constant(observed, nan);
-  response.harmonics =
-      ComplexMatrix::Constant(observed, static_cast<Index>(request_.harmonics.size()), {infinity, nan});
-  response.dissipated = response.slip_share = response.offset = Vector::Constant(m_, nan);
-  response.viscous_work = response.input_work = nan;
-  response.transitions = 0;
-  response.drift.resize(0);
-}
-
 double PeriodicSolver::observed_size(const Vector& y) const {
   double size = 0.0;
   for (const auto& what : request_.observed)
@@ -171,7 +155,7 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   response.status = SteadyStatus::not_converged;
   const bool converged = iterate(excitation, response) || iterate_from_elsewhere(excitation, response);
   if (response.status == SteadyStatus::unbounded) {
-    report_unbounded(response);
+    make_unbounded(request_, m_, response);
     known_.clear();
     return;
   }

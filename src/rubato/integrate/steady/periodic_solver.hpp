@@ -82,7 +82,6 @@ class PeriodicSolver final : public SteadySolver {
   void remember(const Excitation& excitation);
   void forget_others(const Excitation& excitation);
   double scaled_size(const Vector& y, double omega) const;
-  void report_unbounded(SteadyResponse& response) const;
 
   const system::LocallyNonlinear& system_;
   SteadyRequest request_;

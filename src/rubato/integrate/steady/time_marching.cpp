@@ -2,6 +2,7 @@
 #include <rubato/integrate/steady/lane_map.hpp>
 #include <rubato/integrate/steady/stepper_map.hpp>
 #include <rubato/integrate/steady/time_marching_parts.hpp>
+#include <rubato/integrate/steady/undamped_resonance.hpp>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
@@ -20,6 +22,19 @@ constexpr double steps_in_ringing = 8.0;
 constexpr int most_retries = 2;  // with twice the steps, of a march that does not repeat
 // Steps are chosen for this part of the tolerance, so that the next point seldom needs a second round.
 constexpr double aim = 0.7;
+
+// A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite.
+void find_unbounded(const system::LocallyNonlinear& system, std::span<const Excitation> excitations,
+                    const SteadyRequest& request, std::span<SteadyResponse> responses) {
+  if (system.stop_count() > 0) return;  // stops may bound the motion
+  std::optional<UndampedResonance> resonance;
+  for (std::size_t l = 0; l < responses.size(); ++l) {
+    if (is_repeating(responses[l].status)) continue;
+    if (!resonance) resonance.emplace(system);
+    if (resonance->is_driven_beyond_friction(excitations[l]))
+      make_unbounded(request, system.slider_count(), responses[l]);
+  }
+}
 
 // The place of a structure that drifts says nothing.
 void leave_out_means(SteadyResponse& response) {
@@ -132,6 +147,7 @@ bool TimeMarchingSolver::solve_with(Engine& engine, std::span<const Excitation> 
     }
     steps = more;
   }
+  find_unbounded(system_, excitations, request_, responses);
   steps_ = engine.steps = steps;
   engine.next_steps = 8 * static_cast<int>(std::ceil(std::min<double>(suggestion, options_.max_steps) / 8.0));
   for (std::size_t l = 0; l < count; ++l) {

@@ -23,10 +23,11 @@ namespace rubato::integrate {
 /// at a tolerance of 1e-3: generalized-alpha at most 0.51 of what is said, exponential 0.59.
 ///
 /// Status: converged; not_converged (no repetition within max_periods, or max_steps too few for the tolerance);
-/// subharmonic and quasi_periodic, found where nothing is extrapolated; unbounded where the motion grows in proportion
-/// to time; drifting where it repeats but for a displacement (of structures of up to 300 coordinates). `error` is that
-/// of the step and of the rest of the transient together; NaN where it cannot be estimated. Work with the sums of a
-/// ledger: average acceleration closes the balance of energy to round-off.
+/// subharmonic and quasi_periodic, found where nothing is extrapolated; unbounded where it does not repeat and the
+/// loads meet a resonance without damping (UndampedResonance); drifting where it repeats but for a displacement (of
+/// structures of up to 300 coordinates). `error` is that of the step and of the rest of the transient together; NaN
+/// where it cannot be estimated. Work with the sums of a ledger: average acceleration closes the balance of energy to
+/// round-off.
 class TimeMarchingSolver final : public SteadySolver {
  public:
   /// The system must outlive the solver. Throws InvalidInput for the method `exact`, for a method without a stable

@@ -1,0 +1,96 @@
+#include <rubato/integrate/steady/undamped_resonance.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr double driven = 1e-12;  // of |phi| |f|: a load that gives less is none on this motion
+
+// The work that sliders take from a motion: the sum of |b^T phi| limit.
+double friction_along(const system::LocallyNonlinear& system, const Vector& limits, const Vector& motion) {
+  double taken = 0.0;
+  for (Index i = 0; i < system.slider_count(); ++i)
+    taken += std::abs(system.relative_displacement(i, motion)) * limits[i];
+  return taken;
+}
+
+// Those of the motions that no damper resists: a constant load drives the others at a bounded speed.
+Matrix undamped(const SparseMatrix& damping, const Matrix& motions) {
+  const Matrix resistance = motions.transpose() * (damping * motions);
+  const double terms = (motions.cwiseAbs().transpose() * (damping.cwiseAbs() * motions.cwiseAbs())).trace();
+  const Eigen::SelfAdjointEigenSolver<Matrix> parts(resistance);
+  const Index count = (parts.eigenvalues().array().abs() <= round_off_of_terms * terms).count();
+  return motions * parts.eigenvectors().leftCols(count);
+}
+
+}  // namespace
+
+UndampedResonance::UndampedResonance(const system::LocallyNonlinear& system)
+    : system_(system), stiffness_(system, StuckSliders(static_cast<std::size_t>(system.slider_count()), false)) {}
+
+Matrix UndampedResonance::motions_at(double w) {
+  if (w == 0.0 && at_rest_) return *at_rest_;
+  stiffness_.factorise(w);
+  Matrix motions = stiffness_.free_motions();
+  if (w > 0.0) return motions;
+  if (motions.cols() > 0) motions = undamped(system_.damping(), motions);
+  at_rest_ = motions;
+  return motions;
+}
+
+bool UndampedResonance::is_driven_beyond_friction(double w, const ComplexVector& load, const Vector& limits) {
+  if (load.isZero(0.0)) return false;
+  Matrix motions = motions_at(w);
+  if (motions.cols() == 0) return false;
+  // Of several motions at one frequency each by itself, and what the load drives of them together, in both phases.
+  const Index count = motions.cols();
+  if (count > 1) {
+    Matrix shares(count, 2);
+    shares << motions.transpose() * load.real(), motions.transpose() * load.imag();
+    const Matrix together = motions * shares;
+    motions.conservativeResize(Eigen::NoChange, count + 2);
+    motions.rightCols(2) = together;
+  }
+  for (Index c = 0; c < motions.cols(); ++c) {
+    const Vector motion = motions.col(c);
+    const double given = std::abs((motion.transpose().cast<Complex>() * load)(0));
+    const double size = motion.cwiseAbs().dot(load.cwiseAbs());
+    if (!(given > driven * size)) continue;
+    const double taken = friction_along(system_, limits, motion);
+    if (w == 0.0 ? given > taken : std::numbers::pi * given >= 4.0 * taken) return true;
+  }
+  return false;
+}
+
+bool UndampedResonance::is_driven_beyond_friction(const Excitation& excitation) {
+  if (excitation.constant.size() > 0 &&
+      is_driven_beyond_friction(0.0, excitation.constant.cast<Complex>(), excitation.limits))
+    return true;
+  return std::any_of(excitation.harmonics.begin(), excitation.harmonics.end(), [&](const LoadHarmonic& load) {
+    return is_driven_beyond_friction(load.order * excitation.angular_frequency, load.amplitude, excitation.limits);
+  });
+}
+
+void make_unbounded(const SteadyRequest& request, Index sliders, SteadyResponse& response) {
+  constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const auto observed = static_cast<Index>(request.observed.size());
+  response.status = SteadyStatus::unbounded;
+  response.residual = response.error = infinity;
+  response.amplitude = response.rms = Vector::Constant(observed, infinity);
+  response.velocity_amplitude = response.acceleration_amplitude =
+      Vector::Constant(request.rates ? observed : 0, infinity);
+  response.mean = Vector::Constant(observed, nan);
+  response.harmonics = ComplexMatrix::Constant(observed, static_cast<Index>(request.harmonics.size()), {infinity, nan});
+  response.dissipated = response.slip_share = response.offset = Vector::Constant(sliders, nan);
+  response.viscous_work = response.input_work = nan;
+  response.transitions = 0;
+  response.drift.resize(0);
+}
+
+}  // namespace rubato::integrate
