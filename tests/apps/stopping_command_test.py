@@ -175,6 +175,17 @@ type = "modes"
 count = 600
 """, signal.SIGTERM)
 
+    def test_all_modes_by_a_dense_solver_are_left_behind(self):
+        masses = "".join(f"""
+[[coordinate]]
+name = "m{i}"
+mass = {1 + 0.001 * i}
+[[spring]]
+between = ["m{i}", "{f'm{i - 1}' if i else 'ground'}"]
+stiffness = {100 + i % 7}
+""" for i in range(1500))
+        self.stops(masses + '[[analysis]]\nname = "slow"\ntype = "modes"\ncount = 1500\nobserve = ["m0"]\n', signal.SIGTERM)
+
     def test_a_second_signal_ends_the_process_at_once(self):
         process = self.start(STUDIES["periodic"])
         time.sleep(0.5)

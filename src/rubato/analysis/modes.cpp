@@ -1,6 +1,6 @@
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/observed_blocks.hpp>
-#include <rubato/core/stopping.hpp>
+#include <rubato/core/stopping_aside.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
 
 #include <fmt/format.h>
@@ -127,7 +127,11 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const system
     const SparseMatrix stiffness = limit == 0 ? system.stiffness() : system.stuck_stiffness();
     try {
       const StopScope scope(context.stop);
-      all.push_back({limit, numerics::lowest_damped_modes(stiffness, system.damping(), system.mass(), plan.count)});
+      // Aside: the dense solvers in it cannot be asked to stop.
+      all.push_back(
+          {limit, stoppable_aside([stiffness, damping = system.damping(), mass = system.mass(), count = plan.count] {
+             return numerics::lowest_damped_modes(stiffness, damping, mass, count);
+           })});
     } catch (const Stopped&) {
       break;
     }

@@ -1,4 +1,4 @@
-#include <rubato/core/stopping.hpp>
+#include <rubato/core/stopping_aside.hpp>
 
 namespace rubato {
 namespace {
@@ -14,5 +14,7 @@ StopScope::~StopScope() { current = outer_; }
 void stop_if_asked() {
   if (current && current->load(std::memory_order_relaxed)) throw Stopped();
 }
+
+bool can_be_stopped() { return current != nullptr; }
 
 }  // namespace rubato
