@@ -30,7 +30,8 @@ integrate::Controller controller_of(const std::string& name) {
 integrate::EstimatorKind estimator_of(const model::StepDescription& description, const integrate::Method& method,
                                       double tolerance, double reference, const system::LocallyNonlinear& system) {
   const bool is_paper = description.estimator.empty() && description.controller == "cardona_cassano" &&
-                        !std::holds_alternative<integrate::RungeKutta>(method.formula);
+                        !std::holds_alternative<integrate::RungeKutta>(method.formula) &&
+                        integrate::is_of_second_order(method);
   if (is_paper || description.estimator == "inertia_jump") {
     const double known = description.reference_is_initial ? 0.0 : system.reference();
     return integrate::InertiaJump{tolerance, description.reference ? reference : known, description.as_printed};

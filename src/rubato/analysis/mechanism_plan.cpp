@@ -78,7 +78,8 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
   const double largest = std::min(duration / 50.0, period_limit(mechanism.model(), duration));
   plan_step_range(title, description, parameters, duration,
                   std::min(duration, positive_or(description.largest, largest, title + "largest", parameters)), plan);
-  const bool is_jump = description.estimator == "inertia_jump" || (description.estimator.empty() && is_paper);
+  const bool is_jump = description.estimator == "inertia_jump" ||
+                       (description.estimator.empty() && is_paper && integrate::is_of_second_order(method));
   if (description.reference_is_initial)
     throw InvalidInput(description.where, title +
                                               "reference = \"initial\" measures displacements, and configurations "

@@ -48,12 +48,22 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Gener
                                           double duration) {
   if (const auto* jump = std::get_if<InertiaJump>(&kind)) {
     require_tolerance(jump->tolerance, false);
+    if (!is_of_second_order({"", method}))
+      throw InvalidInput(
+          "the estimator inertia_jump measures the error of methods of second order, and this one is of first; take "
+          "the "
+          "estimator local_error");
     return make_inertia_jump(*jump, method, std::move(space), start);
   }
   const auto* local = std::get_if<LocalError>(&kind);
   if (!local) throw InvalidInput("the estimator embedded compares two methods; take local_error or inertia_jump");
   require_tolerance(local->tolerance, true);
   return make_local_error(*local, error_constants(method), std::move(space), duration);
+}
+
+bool is_of_second_order(const Method& method) {
+  const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
+  return !alpha || error_constants(*alpha).order == 2;
 }
 
 EstimatorKind default_estimator(const Method& method, double tolerance) {

@@ -99,6 +99,10 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Gener
                                           std::unique_ptr<ErrorSpace> space, const system::State& start,
                                           double duration);
 
+/// Whether the leading error of a step is of third order: inertia_jump measures no other. Wilson-theta and methods that
+/// carry no acceleration: true, others refuse them.
+bool is_of_second_order(const Method& method);
+
 /// The estimator of a method unless another is asked for: `embedded` for pairs and Wilson-theta, else `local_error`.
 EstimatorKind default_estimator(const Method& method, double tolerance);
 
