@@ -8,6 +8,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -64,10 +67,19 @@ int finish(int status) {
   return status == rubato::app::exit_done ? rubato::app::exit_failed : status;
 }
 
+/// Files that a run opens take the lowest numbers that are free: where a shell has closed stdout or stderr (`>&-`),
+/// what is said would go into the results. The numbers are given to a device which refuses what they are for.
+void occupy_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF)
+      (void)!open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace rubato;
+  occupy_standard_streams();
   CLI::App cli{
       "Rubato integrates structures with friction in time.\n\n"
       "  rubato example underplatform-damper     copies an example here\n"

@@ -153,20 +153,24 @@ class Runner {
     ProgressBar progress(options_.quiet, has_neighbours);
     analysis::RunContext context{sink_, progress, stop_, options_.jobs, journals_[index].get()};
     RunReport report;
+    bool is_refused = false;
     try {
       report = analysis::run_analysis(
           task, {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
     } catch (const std::bad_alloc&) {
       report = {RunStatus::failed, "out of memory; observe fewer coordinates, or take a smaller model", {}};
+    } catch (const InvalidInput& fault) {
+      report = {RunStatus::failed, fault.where().file.empty() ? fault.message() : fault.what(), {}};
     } catch (const std::exception& fault) {
       report = {RunStatus::failed, fault.what(), {}};
-      is_over_ = true;  // what cannot be written now cannot be written later
+      is_over_ = is_refused = true;  // what cannot be written now cannot be written later
     }
     if (!options_.quiet)
       for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
     for (const std::string& warning : report.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
-    const bool can_resume = report.status == RunStatus::interrupted && journals_[index] && watch_.loss().empty();
+    const bool can_resume =
+        (report.status == RunStatus::interrupted || is_refused) && journals_[index] && watch_.loss().empty();
     if (report.status != RunStatus::done)
       tell(fmt::format("{}: analysis \"{}\" {}: {}{}", study_.description.file, task.name,
                        report.status == RunStatus::failed ? "failed" : "stopped", report.message,
@@ -265,7 +269,10 @@ int run(const RunOptions& options) {
   try {
     io::make_output_folder(folder);
     lock.emplace(folder);
-    if (!lock->warning().empty()) tell("warning: " + lock->warning());
+    if (!lock->warning().empty()) {
+      tell("warning: " + lock->warning());
+      setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);  // HDF5 would lock its file too, and refuse to write
+    }
     former = tables_in(folder);
     io::require_disk_space(folder, study.expected_bytes() - (options.resume ? bytes_replaced(study, folder) : 0.0));
     io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,

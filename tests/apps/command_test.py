@@ -364,6 +364,19 @@ duration = 1.0
         self.assertEqual(process.wait(timeout=60), 0)
         self.assertTrue((self.folder / "out/report.html").exists())
 
+    def test_messages_do_not_go_into_the_results_where_streams_are_closed(self):
+        study = EXAMPLES / "single-mass" / "study.toml"
+        self.assertEqual(self.run_command("run", study, "-o", "open").returncode, 0)
+        for closed in (">&-", "2>&-", "<&- >&- 2>&-"):
+            shell = subprocess.run(f"{RUBATO} run {study} -o closed {closed}", shell=True, capture_output=True, text=True,
+                                   cwd=self.folder, timeout=60)
+            self.assertEqual(shell.returncode, 0 if closed == "2>&-" else 3)  # the answer, the path of the report, is lost
+            for name in ("response.csv", "exact.csv", "response.energy.csv"):
+                self.assertEqual((self.folder / "closed" / name).read_bytes(), (self.folder / "open" / name).read_bytes(), closed)
+            self.assertTrue((self.folder / "closed/report.html").exists(), closed)
+            self.assertNotIn(b"steps (100 %)", (self.folder / "closed/results.nc").read_bytes())
+            shutil.rmtree(self.folder / "closed")
+
     def test_two_runs_do_not_write_into_one_folder(self):
         study = self.write(LONG.replace("DURATION", "2e7"))
         first = self.start(study)

@@ -19,7 +19,13 @@ constexpr double closing_bytes = 256.0 * 1024;
 
 NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(partial_name(path)), name_(std::move(path)) {
   errno = 0;
-  check(nc_create(path_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_));
+  if (const int status = nc_create(path_.c_str(), NC_NETCDF4 | NC_CLOBBER, &id_); status != NC_NOERR) {
+    const int reason = errno;
+    std::error_code ignored;
+    if (path_ != name_) std::filesystem::remove(path_, ignored);
+    errno = reason;
+    check(status);
+  }
   is_open_ = true;
   known_ = KnownFile(path_);
 }
