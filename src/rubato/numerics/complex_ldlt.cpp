@@ -44,12 +44,12 @@ void ComplexLdlt::analyse(const SparseMatrix& pattern, std::span<const int> last
 }
 
 Index ComplexLdlt::factorise(const SparseComplexMatrix& matrix, const Vector& scale) {
-  stop_if_asked();
   const double tiny = std::numeric_limits<double>::epsilon();
   Index replaced = 0;
   std::fill(mark_.begin(), mark_.end(), -1);
   std::fill(filled_.begin(), filled_.end(), 0);
   for (int k = 0; k < int(n_); ++k) {
+    stop_if_asked();  // between two rows nothing is left in work_
     // Row k of the matrix, and the columns that reach it in an order in which each comes before its ancestors.
     mark_[std::size_t(k)] = k;
     int top = int(n_);

@@ -1,3 +1,4 @@
+#include <rubato/core/stopping.hpp>
 #include <rubato/numerics/supernodal_factor.hpp>
 
 #include <algorithm>
@@ -159,6 +160,7 @@ bool SupernodalFactor::factorise(const SparseMatrix& matrix, const EliminationOr
     gather(s, matrix, order, local);
     Panel own = panel(s);
     for (int d = head[s], following; d != -1; d = following) {
+      stop_if_asked();
       const auto child = static_cast<std::size_t>(d);
       following = after[child];
       const int* const rows_there = rows_of(child);
