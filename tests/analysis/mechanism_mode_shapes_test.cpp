@@ -230,5 +230,43 @@ TEST(MechanismModeShapes, OfWhatIsNotStableTellHowItLeaves) {
   EXPECT_NEAR(ran.at(0, "modes", "angle_shape", "bob.rz"), 1.0 / std::sqrt(0.8), 1e-9);
 }
 
+/// A body on a guide along x, pulled by a formula.
+std::string guided(const std::string& formula) {
+  return fmt::format(R"study(
+[[body]]
+name = "bob"
+mass = 2.0
+inertia = 0.3
+position = [0.0, 0.0]
+[[joint]]
+name = "guide"
+type = "prismatic"
+between = ["ground", "bob"]
+at = [0.0, 0.0]
+axis = [1.0, 0.0]
+force = "{}"
+[[analysis]]
+name = "modes"
+type = "modes"
+)study",
+                     formula);
+}
+
+// A formula is differentiated exactly, however small the lengths and rates over which it bends: k = 8e-6/1e-6, c =
+// 4e-6/1e-5.
+TEST(MechanismModeShapes, TakeExactSlopesOfFormulasThatBendWithinMicrometres) {
+  const MechanismStudy ran(guided("-8e-6*sin(displacement/1e-6) - 4e-6*tanh(rate/1e-5)"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  EXPECT_NEAR(ran.at(0, "modes", "angular_frequency"), 2.0, 1e-12);
+  EXPECT_NEAR(ran.at(0, "modes", "damping_ratio"), 0.4 / (2.0 * 2.0 * 2.0), 1e-12);
+}
+
+// s sqrt(abs(s)) is flat at zero, though the terms of its slope are 0 times infinity there.
+TEST(MechanismModeShapes, TakeADifferenceWhereAFormulaHasNoFiniteSlope) {
+  const MechanismStudy ran(guided("-8*displacement - displacement*sqrt(abs(displacement))"));
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  EXPECT_NEAR(ran.at(0, "modes", "angular_frequency"), 2.0, 1e-3);  // the difference is sqrt(6e-6) off
+}
+
 }  // namespace
 }  // namespace rubato

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <gtest/gtest.h>
@@ -160,6 +161,18 @@ TEST(TimeFormulaSwitches, AreKnownBesideOtherValues) {
   EXPECT_EQ(times("(angle > 0 ? t : 2*t)*rate > 5 ? 1 : min(t, 3)"), (std::vector<double>{3.0}));
   EXPECT_FALSE(switching_formula("-3*angle - rate*t", parameters, {"angle", "rate"}).has_value());
   EXPECT_FALSE(switching_formula("speed > 3 ? t : 2", parameters).has_value());
+}
+
+// d/ds and d/dv of s^2 v + t s at s = 3, v = 2, t = 5, and of the branch that is taken.
+TEST(FormulaSlopes, AreThoseByTheOtherValues) {
+  const FormulaSlopes smooth("s^2*v + t*s", parameters, {"s", "v"});
+  const std::vector<double> at{3.0, 2.0};
+  EXPECT_DOUBLE_EQ(smooth(0, 5.0, at), 17.0);
+  EXPECT_DOUBLE_EQ(smooth(1, 5.0, at), 9.0);
+  const FormulaSlopes branches("s > 1 ? max(s, v)*speed : tau*v", parameters, {"s", "v"});
+  EXPECT_DOUBLE_EQ(branches(0, 5.0, at), 20.0);
+  EXPECT_DOUBLE_EQ(branches(1, 5.0, at), 0.0);
+  EXPECT_DOUBLE_EQ(branches(1, 5.0, std::vector<double>{0.5, 2.0}), 0.3);
 }
 
 TEST(TimeFormulaSwitches, JoinTheRowsOfATableButForRoundOff) {

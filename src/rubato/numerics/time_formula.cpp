@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 namespace rubato::numerics {
@@ -179,6 +181,18 @@ class TimeFormulaParser {
     if (!is_at_end()) refuse();
   }
 
+  /// The other values, and by which of them is differentiated instead of by t.
+  struct Others {
+    std::span<const double> values;
+    std::size_t by = 0;
+  };
+  /// A node and its derivatives.
+  /// @param others  none: they have no value
+  static double slope(const TimeFormula& formula, double t, const Others& others) {
+    return evaluate(formula, static_cast<int>(formula.nodes_.size()) - 1, t, 0, &others).rate;
+  }
+  static D evaluate(const TimeFormula& formula, int index, double t, int direction, const Others* others);
+
  private:
   [[noreturn]] void refuse() const {
     throw InvalidInput("the derivative of \"" + text_ + "\" with respect to t is not known from character " +
@@ -311,7 +325,11 @@ class TimeFormulaParser {
     if (name == "pi") return add_constant(std::numbers::pi);
     for (const auto& [known, value] : parameters_)
       if (known == name) return add_constant(value);
-    if (std::find(others_.begin(), others_.end(), name) != others_.end()) return add(Kind::other);
+    if (const auto found = std::find(others_.begin(), others_.end(), name); found != others_.end()) {
+      const int node = add(Kind::other);
+      formula_.nodes_.back().constant = static_cast<double>(found - others_.begin());  // its number
+      return node;
+    }
     at_ = start;
     refuse();
   }
@@ -365,6 +383,11 @@ TimeFormula::TimeFormula(std::string text, const Parameters& parameters, std::ve
   TimeFormulaParser(*this, parameters, others).parse();
 }
 
+double FormulaSlopes::operator()(std::size_t other, double t, std::span<const double> values) const {
+  const TimeFormulaParser::Others others{values, other};
+  return TimeFormulaParser::slope(formula_, t, others);
+}
+
 TimeDerivatives TimeFormula::operator()(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, 0); }
 
 TimeDerivatives TimeFormula::from_left(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, -1); }
@@ -372,12 +395,20 @@ TimeDerivatives TimeFormula::from_left(double t) const { return at(static_cast<i
 TimeDerivatives TimeFormula::from_right(double t) const { return at(static_cast<int>(nodes_.size()) - 1, t, 1); }
 
 TimeDerivatives TimeFormula::at(int index, double t, int direction) const {
-  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  return TimeFormulaParser::evaluate(*this, index, t, direction, nullptr);
+}
+
+D TimeFormulaParser::evaluate(const TimeFormula& formula, int index, double t, int direction, const Others* others) {
+  const Node& node = formula.nodes_[static_cast<std::size_t>(index)];
   if (node.kind == Kind::constant) return {node.constant, 0.0, 0.0};
-  if (node.kind == Kind::time) return {t, 1.0, 0.0};
+  if (node.kind == Kind::time) return {t, others ? 0.0 : 1.0, 0.0};
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (node.kind == Kind::other) return {unknown, unknown, unknown};
-  const D a = at(node.first, t, direction);
+  if (node.kind == Kind::other) {
+    if (!others) return {unknown, unknown, unknown};
+    const std::size_t which = static_cast<std::size_t>(node.constant);
+    return {others->values[which], which == others->by ? 1.0 : 0.0, 0.0};
+  }
+  const D a = evaluate(formula, node.first, t, direction, others);
   switch (node.kind) {
     case Kind::negative:
       return {-a.value, -a.rate, -a.second_rate};
@@ -399,11 +430,11 @@ TimeDerivatives TimeFormula::at(int index, double t, int direction) const {
       return {side == unordered ? nearest : side < 0 ? step - 0.5 : step + 0.5, 0.0, 0.0};
     }
     case Kind::choice:
-      return at(a.value != 0.0 ? node.second : node.third, t, direction);
+      return evaluate(formula, a.value != 0.0 ? node.second : node.third, t, direction, others);
     default:
       break;
   }
-  const D b = at(node.second, t, direction);
+  const D b = evaluate(formula, node.second, t, direction, others);
   switch (node.kind) {
     case Kind::sum:
       return {a.value + b.value, a.rate + b.rate, a.second_rate + b.second_rate};

@@ -1,17 +1,21 @@
 #pragma once
 
+#include <rubato/core/error.hpp>
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -159,13 +163,23 @@ class Drive final : public CoordinateLaw<Coordinate> {
   Drive(std::string name, const Coordinate& s, std::string formula, numerics::Parameters parameters, const AtLock& when)
       : Base(std::move(name), s, when), text_(std::move(formula)), names_(std::move(parameters)) {
     switches_ = numerics::switching_formula(text_, names_, {s.name(), "rate"}).has_value();
+    try {
+      slopes_.emplace(text_, names_, std::vector<std::string>{s.name(), "rate"});
+    } catch (const InvalidInput&) {
+      // a function whose derivative is not known: slopes are differences
+    }
     names_.insert(names_.begin(), {{s.name(), 0.0}, {"rate", 0.0}, {"t", 0.0}});
     for (const std::size_t i : numerics::parameters_used(text_, names_))
       if (i < uses_.size()) uses_[i] = true;
     bind();
   }
   Drive(const Drive& other)
-      : Base(other), text_(other.text_), names_(other.names_), uses_(other.uses_), switches_(other.switches_) {
+      : Base(other),
+        text_(other.text_),
+        names_(other.names_),
+        uses_(other.uses_),
+        switches_(other.switches_),
+        slopes_(other.slopes_) {
     bind();
   }
   std::unique_ptr<Element> clone() const override { return std::make_unique<Drive>(*this); }
@@ -189,12 +203,21 @@ class Drive final : public CoordinateLaw<Coordinate> {
     values_[2] = t;
     return (*formula_)();
   }
-  // Half the digits are good enough for Newton's matrix: steps of the cube root of round-off.
+  // Exact, since modes are made of them: nothing tells how short a difference would have to be. Where the formula has
+  // no finite slope (s sqrt(abs(s)) at zero, whose terms are 0 times infinity) it is one: steps of the cube root of
+  // round-off.
   void law_slopes(double s, double rate, double t, double& by_s, double& by_rate) const override {
     constexpr double relative = 6e-6;
-    const double ds = relative * (1.0 + std::abs(s)), dr = relative * (1.0 + std::abs(rate));
-    if (uses_[0]) by_s = (law(s + ds, rate, t) - law(s - ds, rate, t)) / (2.0 * ds);
-    if (uses_[1]) by_rate = (law(s, rate + dr, t) - law(s, rate - dr, t)) / (2.0 * dr);
+    const std::array<double, 2> at{s, rate};
+    const auto slope = [&](std::size_t i) {
+      const double exact = slopes_ ? (*slopes_)(i, t, at) : std::numeric_limits<double>::quiet_NaN();
+      if (std::isfinite(exact)) return exact;
+      const double step = relative * (1.0 + std::abs(at[i]));
+      const double ds = i == 0 ? step : 0.0, dr = i == 1 ? step : 0.0;
+      return (law(s + ds, rate + dr, t) - law(s - ds, rate - dr, t)) / (2.0 * step);
+    };
+    if (uses_[0]) by_s = slope(0);
+    if (uses_[1]) by_rate = slope(1);
   }
   bool depends_on_rate() const override { return uses_[1]; }
 
@@ -202,6 +225,7 @@ class Drive final : public CoordinateLaw<Coordinate> {
   numerics::Parameters names_;
   std::array<bool, 3> uses_{};  // s, rate, t
   bool switches_ = false;       // with t alone
+  std::optional<numerics::FormulaSlopes> slopes_;
   mutable std::vector<double> values_;
   std::unique_ptr<numerics::BoundFormula> formula_;
   double constant_ = 0.0;
