@@ -1,0 +1,234 @@
+"""Holds what the command wrote for a mechanism against the oracle."""
+
+import csv
+import pathlib
+import re
+
+import numpy as np
+
+from mechanism import Mechanism, Refused
+from mechanism_columns import transient_row
+from mechanism_march import March
+
+# errors of accelerations, reactions and energies over those of positions and velocities
+LOOSER = {"m": 1, "rad": 5, "m/s": 20, "rad/s": 20, "m/s2": 100, "rad/s2": 100, "N": 100, "N m": 100, "J": 20}
+
+
+def read_csv(path):
+    """Columns by name; text stays text."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    out = {}
+    for name, cells in zip(rows[0], zip(*rows[1:]) if len(rows) > 1 else [[]] * len(rows[0])):
+        try:
+            out[name] = np.array([float(c) if c else np.nan for c in cells])
+        except ValueError:
+            out[name] = list(cells)
+    return out
+
+
+def unit_of(column):
+    found = re.search(r"\[([^]]*)\]$", column)
+    return found.group(1) if found else ""
+
+
+class Finding:
+    def __init__(self, analysis, column, error, limit, note=""):
+        self.analysis, self.column, self.error, self.limit, self.note = analysis, column, error, limit, note
+
+    def __str__(self):
+        return f"{self.analysis}: {self.column}: error {self.error:.3g}, limit {self.limit:.3g} {self.note}"
+
+
+def differences(ours, theirs, keep, floor):
+    """{column: largest difference over the largest of its unit}, and the columns that only one side has."""
+    scale = {}
+    for name, values in theirs.items():
+        if name.startswith("time") or isinstance(values, list):
+            continue
+        u = unit_of(name)
+        ours_too = ours.get(name)
+        big = np.nanmax(np.abs(values)) if len(values) else 0.0
+        if ours_too is not None and len(ours_too):
+            big = max(big, np.nanmax(np.abs(ours_too), initial=0.0))
+        scale[u] = max(scale.get(u, 0.0), big)
+    out = {}
+    for name, values in theirs.items():
+        if name.startswith("time") or name not in ours or isinstance(values, list):
+            continue
+        u = unit_of(name)
+        size = max(scale[u], floor.get(u, 0.0))
+        if size == 0:
+            continue
+        asked = keep & ~np.isnan(ours[name])
+        d = np.abs(np.asarray(ours[name]) - values)[asked]
+        if np.any(np.isnan(d)):
+            out[name] = np.inf
+        elif len(d):
+            out[name] = float(np.max(d)) / size
+    missing = [n for n in theirs if n not in ours and not isinstance(theirs[n], list) and not n.startswith("residue") and n != "state"]
+    return out, missing
+
+
+def floors(march, duration):
+    """What is nothing in each unit: round-off of a model of this size that does not move."""
+    m, T = march.box, duration
+    mass = float(np.max(np.diag(march.model.M)[march.model.free % 6 < 3], initial=0.0))
+    if mass == 0:
+        mass = float(np.max(np.diag(march.model.M))) / m**2
+    unit = {"m": m, "rad": 1.0, "m/s": m / T, "rad/s": 1 / T, "m/s2": m / T**2, "rad/s2": 1 / T**2,
+            "N": mass * m / T**2, "N m": mass * m * m / T**2, "J": mass * m * m / T**2}
+    return {k: 1e-3 * v for k, v in unit.items()}
+
+
+def transient(study, analysis, folder, start=None):
+    """[(column, error over tolerance-free scale)], events of both, for one transient."""
+    model = Mechanism(study)
+    march = March(model)
+    theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")
+    duration = study.number(analysis["duration"])
+    few = thin(theirs["time [s]"])
+    theirs = {k: v[few] if isinstance(v, np.ndarray) else v for k, v in theirs.items()}
+    times = theirs["time [s]"]
+    if start is None and analysis.get("initial") == "static":
+        from mechanism_rest import equilibrium
+        start = equilibrium(march, velocities=True)
+    pairs = march.run(duration, times, start=start, columns=transient_row)
+    ours = {k: np.array([p[0].get(k, np.nan) for p in pairs]) for k in pairs[0][0]}
+    return march, model, ours, theirs, pairs
+
+
+def near(times, events, reach):
+    keep = np.ones(len(times), bool)
+    for e in events:
+        keep &= np.abs(times - e) > reach
+    return keep
+
+
+def judge_transient(study, analysis, folder, tolerance):
+    march, model, ours, theirs, pairs = transient(study, analysis, folder)
+    duration = study.number(analysis["duration"])
+    times = theirs["time [s]"]
+    floor = floors(march, duration)
+    events = [e[0] for e in march.events] + march.breaks(duration)
+    keep = near(times, events, max(1e-9, 10 * tolerance) * duration)
+    found = []
+    errors, missing = differences(ours, theirs, keep, floor)
+    energy_file = pathlib.Path(folder) / f"{analysis['name']}.energy.csv"
+    if energy_file.exists():
+        energy = {k: v[thin(v)] for k, v in read_csv(energy_file).items()}
+        begin = pairs[0][1]["strain [J]"]
+        mine = {k: np.array([p[1][k] for p in pairs]) for k in pairs[0][1]}
+        mine["strain [J]"] = mine["strain [J]"] - begin
+        energy["strain [J]"] = energy["strain [J]"] - energy["strain [J]"][0]
+        if len(energy["time [s]"]) == len(times):
+            more, lacking = differences(mine, energy, keep, floor)
+            errors.update(more)
+            missing += lacking
+    for column, error in errors.items():
+        limit = 10 * tolerance * LOOSER.get(unit_of(column), 1)
+        if not error <= limit:
+            found.append(Finding(analysis["name"], column, error, limit))
+    for column in missing:
+        found.append(Finding(analysis["name"], column, np.inf, 0.0, "unknown to the oracle"))
+    if not keep.any():
+        found.append(Finding(analysis["name"], "-", np.inf, 0.0, "no rows left to compare"))
+    return found, errors, march
+
+
+def thin(times, most=40):
+    """At most so many rows, first and last among them."""
+    n = len(times)
+    return np.arange(n) if n <= most else np.unique(np.round(np.linspace(0, n - 1, most)).astype(int))
+
+
+def judge_static(study, analysis, folder):
+    from mechanism_columns import transient_row
+    from mechanism_rest import equilibrium
+    march = March(Mechanism(study))
+    state = equilibrium(march)
+    ours = transient_row(march, state, 0.0, np.zeros(4))[0]
+    theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")
+    one = {k: np.array([v]) for k, v in ours.items()}
+    force = max(np.max(np.abs(march.applied(state, 0.0)[march.model.free % 6 < 3]), initial=0.0),
+                np.max(np.abs([v for k, v in ours.items() if unit_of(k) == "N"]), initial=0.0))
+    floor = {"m": 1e-3 * march.box, "rad": 1e-3, "N": 1e-3 * force, "N m": 1e-3 * force * march.box}
+    errors, missing = differences(one, theirs, np.ones(1, bool), floor)
+    found = [Finding(analysis["name"], c, e, 1e-6) for c, e in errors.items() if not e <= 1e-6]
+    found += [Finding(analysis["name"], c, np.inf, 0.0, "unknown to the oracle") for c in missing]
+    return found, errors, march
+
+
+def judge_modes(study, analysis, folder):
+    from mechanism_rest import eigenvalues, equilibrium, modes_about
+    model = Mechanism(study)
+    march = March(model)
+    if analysis.get("about", "given") == "static":
+        state = equilibrium(march)
+    else:
+        state = march.begin()
+    C, K, G, Z, out = modes_about(march, state)
+    ours = eigenvalues(C, K, Z)
+    theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")
+    found, errors = [], {}
+    name = analysis["name"]
+    s = theirs["eigenvalue_real [1/s]"] + 1j * theirs["eigenvalue_imaginary [rad/s]"]
+    if len(ours) == 0:
+        return ([Finding(name, "eigenvalue", np.inf, 0.0, "no motion is left")] if len(s) else []), errors, march
+    # what round-off leaves of an eigenvalue: a share of the stiffest motion
+    fast = np.max(np.abs(ours))
+    used = np.zeros(len(ours), bool)
+    worst = 0.0
+    for k, x in enumerate(s):
+        free = np.where(used, np.inf, np.abs(ours - x))
+        i = int(np.argmin(free))
+        used[i] = True
+        reach = 1e-6 * abs(x) + min(1e-9 * fast**2 / max(abs(x), 1e-300), 3e-5 * fast)
+        worst = max(worst, free[i] / reach)
+    errors["eigenvalue"] = worst
+    if not worst <= 50:
+        found.append(Finding(name, "eigenvalue", worst, 50))
+    # none of the lowest may be missing: those above, one of each pair, by size
+    lowest = np.sort(np.abs(ours))[::2]
+    count = len(s)
+    if count and np.max(np.abs(ours.real)) < 1e-7 * fast:
+        gap = np.max(np.abs(np.sort(np.abs(s)) - lowest[:count]) / np.maximum(lowest[:count], 1e-1 * fast)) if count <= len(lowest) else np.inf
+        errors["lowest"] = gap
+        if not gap <= 1e-5:
+            found.append(Finding(name, "lowest modes", gap, 1e-5, "a mode is missing, or one too many"))
+    # the shapes solve the equations
+    letters = ["x", "y", "z", "rx", "ry", "rz"]
+    X = np.zeros((model.nf, count), complex)
+    for k, c in enumerate(model.free):
+        p, i = divmod(int(c), 6)
+        base = f"{model.names[p]}.{letters[i]}"
+        real = f"{base}.shape [1/sqrt(kg)]" if i < 3 else f"{base}.angle_shape [rad/(m sqrt(kg))]"
+        imaginary = f"{base}.shape_imaginary [1/sqrt(kg)]" if i < 3 else f"{base}.angle_shape_imaginary [rad/(m sqrt(kg))]"
+        if real not in theirs:
+            return found, errors, march
+        X[k] = theirs[real] + 1j * (np.nan_to_num(theirs[imaginary]) if imaginary in theirs else 0.0)
+    T = Z.T @ model.M @ X
+    k2, c2 = Z.T @ K @ Z, Z.T @ C @ Z
+    worst, norm, gap = 0.0, 0.0, 0.0
+    for x, y, t in zip(s, X.T, T.T):
+        terms = abs(x) ** 2 * np.linalg.norm(t) + abs(x) * np.linalg.norm(c2 @ t) + np.linalg.norm(k2, 2) * np.linalg.norm(t) * 1e-3
+        if terms > 0:
+            worst = max(worst, np.linalg.norm(x * x * t + x * (c2 @ t) + k2 @ t) / terms)
+        norm = max(norm, abs(np.vdot(y, model.M @ y).real - 1))
+        gap = max(gap, np.linalg.norm(Z @ t - y) / max(np.linalg.norm(y), 1e-300))
+    errors.update({"shape residual": worst, "shape norm": norm, "shape off the constraints": gap})
+    for what, e in (("shape residual", worst), ("shape norm", norm), ("shape off the constraints", gap)):
+        if not e <= 1e-4:
+            found.append(Finding(name, what, e, 1e-4))
+    return found, errors, march
+
+
+def judge(study, analysis, folder):
+    """Findings, errors and the march, of any analysis of a mechanism."""
+    if analysis["type"] == "static":
+        return judge_static(study, analysis, folder)
+    if analysis["type"] == "modes":
+        return judge_modes(study, analysis, folder)
+    step = analysis["step"]
+    tolerance = study.number(step["tolerance"]) if isinstance(step, dict) else 1e-3
+    return judge_transient(study, analysis, folder, tolerance)
