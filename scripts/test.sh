@@ -1,9 +1,19 @@
 #!/usr/bin/env bash
-# Installs what is needed, builds everything optimised and with assertions, and runs every test.
+# Installs what is needed, builds everything optimised and with assertions, and runs the tests.
+#
+#   scripts/test.sh          all but those with the label `slow`
+#   scripts/test.sh --all    those as well: thousands of random studies, hours
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+selection=(--label-exclude slow)
+case ${1:-} in
+  "") ;;
+  --all) selection=() ;;
+  *) sed -n '2,6s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
 
 scripts/install-dependencies.sh
 cmake --preset audit
 cmake --build --preset audit --parallel "$(nproc)"
-exec ctest --preset audit --parallel "$(nproc)"
+exec ctest --preset audit --parallel "$(nproc)" "${selection[@]}"

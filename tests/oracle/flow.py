@@ -56,7 +56,7 @@ class Flow:
         self.sliders, self.stops = model.sliders, model.stops
         self.b_sliders = [self.phi.T @ s.b[f] for s in self.sliders]
         self.b_stops = [self.phi.T @ s.b[f] for s in self.stops]
-        fastest = self._fastest()
+        fastest = self.fastest = self._fastest()
         stride = span / 16
         for law in self.laws:
             inner = law.law if isinstance(law, _Derivative) else law
@@ -83,7 +83,12 @@ class Flow:
             stiffness = stiffness + s.stiffness * numpy.outer(b, b)
         for s, b in zip(self.stops, self.b_stops):
             stiffness = stiffness + s.stiffness * numpy.outer(b, b)
-        return math.sqrt(max(numpy.linalg.eigvalsh(stiffness)[-1], 0.0))
+        squares, psi = numpy.linalg.eigh(stiffness)
+        columns = self.b_sliders + self.b_stops
+        if columns:  # of the modes that contacts feel
+            felt = numpy.max(numpy.abs(numpy.array(columns) @ psi), axis=0)
+            squares = squares[felt > 1e-3 * numpy.max(felt)]
+        return math.sqrt(max(squares[-1], 0.0))
 
     def full(self, side=0):
         """q and v of all coordinates."""

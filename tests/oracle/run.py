@@ -1,45 +1,77 @@
-"""Many random studies: `run.py COMMAND FIRST LAST [--keep FOLDER]`; a table of what was found, and exit status 1 if the
+"""Many random studies: `run.py COMMAND 1-200 studies/x.toml @sample.txt [--keep FOLDER]`; a table of what was found, and exit status 1 if the
 command and the oracle differ anywhere."""
 
 import argparse
 import collections
 import pathlib
 import resource
+import shutil
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from compare import judge  # noqa: E402
+import compare  # noqa: E402
 from generate import generate  # noqa: E402
+
+
+def wanted(words):
+    """Seeds and study files. Lines of a list are the same words, after `#` comments."""
+    found = []
+    for word in words:
+        if word.startswith("@"):
+            file = pathlib.Path(word[1:])
+            lines = [line.split("#")[0].strip() for line in file.read_text().splitlines()]
+            found += wanted([str(file.parent / line) if line.endswith(".toml") else line
+                             for text in lines for line in text.split()])
+        elif word.endswith(".toml"):
+            found.append(word)
+        else:
+            first, _, last = word.partition("-")
+            found += range(int(first), int(last or first) + 1)
+    return found
+
+
+def laid(path, folder):
+    """A copy of a study and of the files beside it that bear its name."""
+    path = pathlib.Path(path)
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in path.parent.glob(path.stem + "*"):
+        shutil.copy(file, folder / file.name)
+    return folder / path.name
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("command")
-    parser.add_argument("first", type=int)
-    parser.add_argument("last", type=int)
+    parser.add_argument("studies", nargs="+", help="seeds, ranges of them (1-200), study files, or a list of these: @FILE")
     parser.add_argument("--keep", help="a folder for the studies on which the two differ")
     parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--seconds", type=float, default=20, help="of processor time for an analysis by the oracle")
     options = parser.parse_args()
+    compare.ORACLE_SECONDS = options.seconds
     counts = collections.defaultdict(collections.Counter)
     differing = []
-    for seed in range(options.first, options.last + 1):
+    for seed in wanted(options.studies):
         with tempfile.TemporaryDirectory() as scratch:
-            folder = pathlib.Path(options.keep) / str(seed) if options.keep else pathlib.Path(scratch)
-            path, kind = generate(seed, folder)
-            for verdict in judge(path, options.command, folder / "results" if options.keep else None):
+            name = seed if isinstance(seed, int) else pathlib.Path(seed).stem
+            folder = pathlib.Path(options.keep) / str(name) if options.keep else pathlib.Path(scratch)
+            if isinstance(seed, int):
+                path, kind = generate(seed, folder)
+            else:
+                path, kind = laid(seed, folder), "file"
+            for verdict in compare.judge(path, options.command, folder / "results" if options.keep else None):
                 counts[verdict.kind][verdict.outcome] += 1
                 if options.verbose:
                     print(f"  {resource.getrusage(resource.RUSAGE_SELF).ru_utime:.1f} {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.1f}")
                 if verdict.outcome in ("differs", "failed") or options.verbose:
-                    print(f"seed {seed} ({kind}): {verdict}", flush=True)
+                    print(f"{name} ({kind}): {verdict}", flush=True)
                 if verdict.outcome == "differs":
-                    differing.append(seed)
+                    differing.append(str(name))
     print(f"\n{'kind':<40}" + "".join(f"{o:>10}" for o in OUTCOMES))
     for kind in sorted(counts):
         print(f"{kind:<40}" + "".join(f"{counts[kind][o]:>10}" for o in OUTCOMES))
-    print(f"seeds that differ: {sorted(set(differing))}")
+    print(f"those that differ: {' '.join(dict.fromkeys(differing))}")
     for name, who in (("oracle", resource.RUSAGE_SELF), ("command", resource.RUSAGE_CHILDREN)):
         print(f"{name}: {resource.getrusage(who).ru_utime:.1f} s of processor time")
     return 1 if differing else 0

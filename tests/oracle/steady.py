@@ -80,13 +80,20 @@ def extremes(x):
     return 0.5 * (top(x) + top(-x))
 
 
-def march(model, samples=240, most_periods=400, settled=1e-9):
+def sticks(model):
+    """Whether no slider ever slips when all begin without force: then the stuck structure is the answer."""
+    fundamental, answers, _ = linear(model, model.stuck_stiffness())
+    return all(numpy.max(numpy.abs(slider.stiffness * wave(fundamental, answers, slider.b))) < 0.999 * slider.limit
+               for slider in model.sliders)
+
+
+def march(model, samples=240, most_periods=400, settled=1e-8):
     """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, and the fundamental."""
     fundamental, loads = orders_of(model)
     period = 2 * math.pi / fundamental
     fundamental_model = model
     flow = Flow(fundamental_model, 0.0, most_periods * period, model.q0 * 0, model.v0 * 0,
-                [0.0] * len(model.sliders), most_strides=400000)
+                [0.0] * len(model.sliders), most_strides=1e9)
     before = None
     for k in range(most_periods):
         state = numpy.concatenate([flow.eta * flow.scale, flow.rate,

@@ -166,6 +166,8 @@ class TableLaw:
     def value(self, t, side=0):
         if t < self.times[0] or t > self.times[-1] or (t == self.times[-1] and side > 0 and self.beyond != "error"):
             return self._outside(t)
+        if t == self.times[0] and side < 0 and t > 0 and self.beyond == "zero":
+            return 0.0
         # of two rows at t the second, unless the value before is asked for
         after = bisect.bisect_left(self.times, t) if side < 0 else bisect.bisect_right(self.times, t)
         if after == 0:

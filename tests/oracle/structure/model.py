@@ -375,7 +375,8 @@ def _damping(study, model):
         free = [i for i in range(len(model.names)) if i not in moved]
         mass, stiffness = model.M[numpy.ix_(free, free)], model.K[numpy.ix_(free, free)]
         squares, phi = scipy.linalg.eigh(stiffness, mass)
-        omega = numpy.sqrt(numpy.maximum(squares, 0.0))
+        round_off = 1e-13 * numpy.einsum("im,ij,jm->m", numpy.abs(phi), numpy.abs(stiffness), numpy.abs(phi))
+        omega = numpy.sqrt(numpy.where(squares > round_off, squares, 0.0))
         ratio = part["modal_ratio"]
         ratios = numpy.zeros(len(free))
         if isinstance(ratio, list):
