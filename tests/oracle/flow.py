@@ -72,6 +72,7 @@ class Flow:
         self.eta, self.rate = mass_phi @ q[f], mass_phi @ v[f]
         self.slips = list(slips) if slips is not None else [0.0] * len(self.sliders)
         self.events = []
+        self.slid = [0.0] * len(self.sliders)  # dissipated by slip since the start
         self._ladder = [stride * 0.5**k for k in range(46)]
         self._start()
 
@@ -340,22 +341,22 @@ class Flow:
             return later
         guards = self._guards(eta, rate)
         if guards.min() >= 0:
-            self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[level]
+            self._take(eta, rate, level)
             return later
         floor = numpy.minimum(self._guards(self.eta, self.rate), 0.0)
         noise = self._noise()
         if numpy.all(guards >= floor - noise):
-            self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[level]
+            self._take(eta, rate, level)
             return later
         for finer in range(level + 1, len(self._ladder)):  # up to the transition, by halves
             eta, rate, later = self._try(finer, coefficients)
             if numpy.all(self._guards(eta, rate) >= floor - noise):
-                self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[finer]
+                self._take(eta, rate, finer)
                 coefficients = later
         before = (tuple(self.modes), tuple(self.stop_modes))
         eta, rate, _ = self._try(len(self._ladder) - 1, coefficients)
         beyond = numpy.nonzero(self._guards(eta, rate) < floor - noise)[0]
-        self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[-1]
+        self._take(eta, rate, len(self._ladder) - 1)
         m = len(self.sliders)
         for i in beyond:
             if i < m:
@@ -367,6 +368,12 @@ class Flow:
         if len(self.events) > 20000:
             raise Unreadable("too many transitions")
         return None
+
+    def _take(self, eta, rate, level):
+        for i, b in enumerate(self.b_sliders):
+            if self.modes[i] != STICK:
+                self.slid[i] += self.sliders[i].limit * abs(b @ (eta - self.eta))
+        self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[level]
 
     def _noise(self):
         noise = []

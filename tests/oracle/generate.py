@@ -450,6 +450,8 @@ class Generator:
             add({"name": "modes", "type": "modes"})
             if self.chance(0.2):
                 list_[-1]["count"] = self.random.randint(1, 3)
+            if self.chance(0.1):
+                list_[-1]["observe"] = [str(self.names[0])]
         transient = {"type": "transient", "duration": self.number(self.duration)}
         if self.chance(0.3) and self.at_rest():
             transient["initial"] = "static"
@@ -465,6 +467,7 @@ class Generator:
                                        "dormand_prince", "bogacki_shampine", "fox_goodwin", "generalized_alpha",
                                        "newmark", "central_difference"])
             automatic["method"] = self.method(name)
+        self.automatic_keys(automatic)
         if self.chance(0.85):
             add(automatic)
         loads_exact = not any("expression" in p for key in ("force", "distributed_force") for p in self.tables.get(key, []))
@@ -485,6 +488,50 @@ class Generator:
         self.random.shuffle(list_)
         list_.sort(key=lambda a: a["name"])
         self.tables["analysis"] = list_
+
+    def automatic_keys(self, part):
+        """The rarer keys of a transient whose steps choose themselves."""
+        step, duration = part["step"], self.duration
+        if self.chance(0.15):
+            step["first"] = self.number(duration / self.random.choice([1000, 5000]))
+        if self.chance(0.15):
+            step["largest"] = self.number(duration / self.random.choice([60, 200, 500]))
+        if self.chance(0.1):
+            step["smallest"] = self.number(duration * 1e-11)
+        if self.chance(0.1):
+            step["rebuild"] = False
+        method = part.get("method", "generalized_alpha")
+        method = method["name"] if isinstance(method, dict) else method
+        pairs = ("dormand_prince", "bogacki_shampine", "wilson_theta")
+        way = self.random.random()
+        if way < 0.06 and method not in pairs:
+            step["estimator"] = "local_error"
+        elif way < 0.1 and method in pairs:
+            step["estimator"] = "embedded"
+        elif way < 0.16 and method not in ("dormand_prince", "bogacki_shampine"):
+            step.update({"controller": "cardona_cassano", "estimator": "inertia_jump", "tolerance": 1e-3})
+            if self.chance(0.5):
+                step["reference"] = self.random.choice(["initial", self.x])
+            if self.chance(0.3):
+                step["as_printed"] = True
+            step["first"] = duration / 2000
+        elif way < 0.2:
+            step.update({"controller": "fixed", "first": duration / 2000})
+        elif way < 0.25:
+            step["controller"] = "pi"
+        if self.chance(0.1) and "stop" in self.tables:
+            step["events"] = "pass"
+        if self.chance(0.15):
+            part["output"] = self.random.choice([{"every": 2}, {"interval": self.duration / 50},
+                                                 {"times": [0.1 * self.duration, 0.55 * self.duration, self.duration]}])
+        if self.chance(0.12):
+            part["observe"] = [str(n) for n in self.names[:2]]
+            if len(self.names) > 1 and not self.frames:
+                part["observe"].append(f"{self.names[0]} - {self.names[-1]}")
+        if "initial" in part and "displacement" in self.tables and "value" in self.tables["displacement"][0] and self.chance(0.5):
+            part["displacements"] = [str(self.tables["displacement"][0]["on"])]
+        if self.chance(0.05):
+            part["allow_unstable"] = True
 
     def at_rest(self):
         """Static starts find the positions, so none may be given."""
@@ -530,7 +577,88 @@ class Generator:
             part["solver"] = solver
         if self.chance(0.2):
             part["observe"] = [str(self.names[0])] + ([f"{self.names[0]} - {self.names[-1]}"] if len(self.names) > 1 else [])
+        if self.chance(0.3):
+            part["harmonics"] = [3] if self.chance(0.5) else [2, 3]
+        if solver == "time_marching":
+            if self.chance(0.4):
+                part["method"] = self.method(self.random.choice(["average_acceleration", "exponential", "hht"]))
+            if self.chance(0.3):
+                part["steps_per_period"] = 512
+            if self.chance(0.3):
+                part["max_periods"] = 600
+        if solver and solver != "periodic" and self.chance(0.4):
+            part["tolerance"] = self.number(self.random.choice([1e-2, 1e-3, 1e-4]))
+        if self.chance(0.2):
+            part["waveforms"] = {"at": [self.omega], "points": 32}
+        if self.chance(0.15):
+            part["start"] = self.random.choice(["unloaded", "previous", "rest"])
+            if part["start"] == "previous" and self.chance(0.5):
+                part["direction"] = self.random.choice(["up", "down", "both"])
+        if self.chance(0.35):
+            self.sweep(part)
+        if self.chance(0.15) and "Hz" not in part:
+            part["frequency"] = [w / (2 * math.pi) for w in self.frequencies(part.pop("angular_frequency"))]
+            for load in harmonics:
+                if load.get("angular_frequency") in ("Omega", "3*Omega"):
+                    load["frequency"] = load.pop("angular_frequency")
+            if "excitation" not in part:
+                part["excitation"] = "Omega"
+            self.tables["parameters"]["Omega"] = self.omega * 0.9 / (2 * math.pi)
         add(part)
+        if self.chance(0.3) and len(self.names) <= 3 and not self.frames and "stop" not in self.tables and "frequency" not in part:
+            name = next((k for k in self.tables["parameters"] if k[0] == "p" and isinstance(self.tables["parameters"][k], float)), None)
+            if name:
+                value = self.tables["parameters"][name]
+                curve = {"name": "curve", "type": "damper_curve", "parameter": name,
+                         "range": sorted([value * 0.8, value * 1.3, value]),
+                         "angular_frequency": {"from": self.omega * 0.3, "to": self.omega * 3, "points": 33},
+                         "excitation": "Omega", "optimum": self.chance(0.3)}
+                if self.chance(0.2):
+                    curve["objective"] = self.random.choice(["amplitude", "dissipated"])
+                if self.chance(0.3):
+                    curve["observe"] = str(self.names[0])
+                add(curve)
+        if self.chance(0.2) and not self.frames and "slider" not in self.tables and "stop" not in self.tables:
+            period = 2 * math.pi / self.omega
+            study = {"name": "methods", "type": "method_study", "step": period / 100, "duration": 3 * period}
+            if self.chance(0.5):
+                study["methods"] = ["average_acceleration", {"name": "hht", "alpha": -0.1}]
+            if self.chance(0.3):
+                study["ladder"] = [period / 100, period / 200]
+            if self.chance(0.3):
+                study["observe"] = str(self.names[0])
+            add(study)
+
+    @staticmethod
+    def frequencies(values):
+        if isinstance(values, list):
+            return values
+        return [values["from"], 0.5 * (values["from"] + values["to"]), values["to"]]
+
+    def sweep(self, part):
+        names = [k for k, v in self.tables["parameters"].items() if k[0] == "p" and isinstance(v, float)]
+        if not names:
+            return
+        name = names[0]
+        value = self.tables["parameters"][name]
+        way = self.random.randrange(4)
+        if way == 0:
+            part["sweep"] = {name: [value, value * 1.2]}
+        elif way == 1:
+            low, high = sorted([value, value * 1.5])
+            part["sweep"] = {name: {"from": low, "to": high, "points": 2}}
+            if len(names) > 1:
+                part["sweep"][names[1]] = [self.tables["parameters"][names[1]]]
+        elif way == 2:
+            (self.folder / "cases.csv").write_text(f"{name}\n{value!r}\n{value * 0.9!r}\n")
+            part["sweep"] = {"file": "cases.csv"}
+        else:
+            part["sweep"] = {"samples": 2, "seed": self.random.randrange(100),
+                             "sampling": self.random.choice(["latin_hypercube", "sobol", "random"]),
+                             "parameters": {name: self.random.choice([
+                                 {"distribution": "normal", "mean": value, "deviation": abs(value) * 0.02},
+                                 {"distribution": "uniform", "from": min(value, value * 1.1), "to": max(value, value * 1.1)},
+                                 {"distribution": "lognormal", "median": abs(value), "deviation": 0.05}])}}
 
     def build(self):
         kind = self.random.choices(["lumped", "plane", "space", "matrices"], [6, 3, 2, 1])[0]
@@ -551,12 +679,13 @@ class Generator:
         self.analyses()
         if not self.tables["parameters"]:
             del self.tables["parameters"]
+        title = "" if self.chance(0.8) else 'title = "A random study"\n\n'
         order = ["parameters", "analysis"]
         tables = {k: v for k, v in self.tables.items() if k not in order}
         tables = {**({"parameters": self.tables["parameters"]} if "parameters" in self.tables else {}), **tables,
                   "analysis": self.tables["analysis"]}
         path = self.folder / "study.toml"
-        path.write_text(write_toml(tables))
+        path.write_text(title + write_toml(tables))
         return path
 
 

@@ -8,6 +8,7 @@ import resource
 import shutil
 import sys
 import tempfile
+import tomllib
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
@@ -32,6 +33,28 @@ def wanted(words):
     return found
 
 
+def keys_of(path, analysis):
+    """`force.amplitude`, ...: the keys of the model and of one analysis."""
+    raw = tomllib.loads(pathlib.Path(path).read_text())
+    found = set()
+
+    def walk(value, place):
+        if isinstance(value, list):
+            for item in value:
+                walk(item, place)
+        elif isinstance(value, dict):
+            for key, item in value.items():
+                named = place in ("parameters", "base_motion.direction", "matrices.position", "matrices.velocity")
+                name = place if named else f"{place}.{key}" if place else key
+                found.add(name)
+                walk(item, name)
+    walk({k: v for k, v in raw.items() if k != "analysis"}, "")
+    for part in raw["analysis"]:
+        if part["name"] == analysis:
+            walk(part, part["type"])
+    return found
+
+
 def laid(path, folder):
     """A copy of a study and of the files beside it that bear its name."""
     path = pathlib.Path(path)
@@ -47,10 +70,12 @@ def main():
     parser.add_argument("studies", nargs="+", help="seeds, ranges of them (1-200), study files, or a list of these: @FILE")
     parser.add_argument("--keep", help="a folder for the studies on which the two differ")
     parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--keys", action="store_true", help="count the outcomes by the keys of the study as well")
     parser.add_argument("--seconds", type=float, default=20, help="of processor time for an analysis by the oracle")
     options = parser.parse_args()
     compare.ORACLE_SECONDS = options.seconds
     counts = collections.defaultdict(collections.Counter)
+    by_key = collections.defaultdict(collections.Counter)
     differing = []
     for seed in wanted(options.studies):
         with tempfile.TemporaryDirectory() as scratch:
@@ -62,6 +87,8 @@ def main():
                 path, kind = laid(seed, folder), "file"
             for verdict in compare.judge(path, options.command, folder / "results" if options.keep else None):
                 counts[verdict.kind][verdict.outcome] += 1
+                for key in keys_of(path, verdict.analysis) if options.keys else []:
+                    by_key[key][verdict.outcome] += 1
                 if options.verbose:
                     print(f"  {resource.getrusage(resource.RUSAGE_SELF).ru_utime:.1f} {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.1f}")
                 if verdict.outcome in ("differs", "failed") or options.verbose:
@@ -71,6 +98,8 @@ def main():
     print(f"\n{'kind':<40}" + "".join(f"{o:>10}" for o in OUTCOMES))
     for kind in sorted(counts):
         print(f"{kind:<40}" + "".join(f"{counts[kind][o]:>10}" for o in OUTCOMES))
+    for key in sorted(by_key):
+        print(f"{key:<40}" + "".join(f"{by_key[key][o]:>10}" for o in OUTCOMES))
     print(f"those that differ: {' '.join(dict.fromkeys(differing))}")
     for name, who in (("oracle", resource.RUSAGE_SELF), ("command", resource.RUSAGE_CHILDREN)):
         print(f"{name}: {resource.getrusage(who).ru_utime:.1f} s of processor time")

@@ -23,9 +23,9 @@ def begin(model, analysis, end, **options):
 
 
 def march(model, analysis, times, **options):
-    """Arrays [times x ...]: q, v, a, slider forces, slips, stop forces; and the flow at its end."""
+    """Arrays [times x ...]: q, v, a, slider forces, slips, stop forces, friction work; and the flow at its end."""
     flow = begin(model, analysis, times[-1], **options)
-    rows = {key: [] for key in ("q", "v", "a", "slider_force", "slip", "stop_force")}
+    rows = {key: [] for key in ("q", "v", "a", "slider_force", "slip", "stop_force", "slid")}
     for t in times:
         flow.advance(t)
         q, v = flow.full()
@@ -34,5 +34,6 @@ def march(model, analysis, times, **options):
         rows["a"].append(flow.acceleration())
         rows["slider_force"].append([flow.slider_force(i) for i in range(len(model.sliders))])
         rows["slip"].append([flow.slip(i) for i in range(len(model.sliders))])
+        rows["slid"].append(sum(flow.slid))
         rows["stop_force"].append([flow.stop_force(i) for i in range(len(model.stops))])
     return {key: numpy.array(value) for key, value in rows.items()}, flow
