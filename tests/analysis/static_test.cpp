@@ -13,6 +13,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <random>
 
 namespace rubato::analysis {
 namespace {
@@ -248,6 +249,68 @@ TEST(StaticEquilibrium, ClosesAStopWhereTheSpringGivesThatFar) {
   ASSERT_EQ(found.outcome, StaticOutcome::found);
   EXPECT_NEAR(found.state.q[0], 0.01981, 1e-14);
   EXPECT_EQ(found.state.slider_force[1], 0.0);
+}
+
+/// What is missing from equilibrium, over the largest load.
+double imbalance(const system::LocallyNonlinear& system, const StaticEquilibrium& found) {
+  Vector left = system.stiffness() * found.state.q;
+  system.add_slider_forces(found.state.slider_force, 1.0, left);
+  double largest = 0.0;
+  for (const auto& force : system.held_forces()) {
+    left[force.coordinate] -= force.value;
+    largest = std::max(largest, std::abs(force.value));
+  }
+  return left.cwiseAbs().maxCoeff() / largest;
+}
+
+// The step to the equilibrium with the stop open would go far beyond the stop, and is cut where the energy is least: a
+// state before the stop, of which nothing but the length of the step was wrong, is no equilibrium.
+TEST(StaticEquilibrium, IsNotWhereAStepTowardsAStopWasCut) {
+  for (const double stiffness : {1e3, 1e4, 1e9, 1e14}) {
+    model::ModelDescription description;
+    description.coordinates = {{"a", 1.0, 0.0, 0.0, {}}, {"b", 1.0, 0.0, 0.0, {}}};
+    description.springs = {{{"a", "ground"}, {}, 500.0, {}}, {{"b", "a"}, {}, 150.0, {}}};
+    description.held_forces = {{"a", -40.0, {}}, {"b", 30.0, {}}};
+    description.stops = {{"s", {"b", "ground"}, {}, 0.1, stiffness, 0.0, {}}};
+    const auto system = assembled(description);
+    const StaticEquilibrium found = find_equilibrium(system, {});
+    ASSERT_EQ(found.outcome, StaticOutcome::found) << stiffness;
+    const double k = 150.0 + stiffness;  // 650 a - 150 b = -40, -150 a + k b = 30 + 0.1 stiffness, by Cramer's rule
+    EXPECT_NEAR(found.state.q[1], (650.0 * (30.0 + 0.1 * stiffness) - 150.0 * 40.0) / (650.0 * k - 150.0 * 150.0),
+                1e-12);
+    EXPECT_LT(imbalance(system, found), 1e-14 * stiffness) << stiffness;
+  }
+}
+
+// Chains with sliders and stops at random, of stiffness 1e-2 to 1e6 of the springs: every state found is an
+// equilibrium.
+TEST(StaticEquilibrium, BalancesAllForcesWhateverContactsThereAre) {
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int trial = 0; trial < 300; ++trial) {
+    const int n = 2 + trial % 5;
+    model::ModelDescription description;
+    const auto name = [](int i) { return i < 0 ? std::string("ground") : "c" + std::to_string(i); };
+    const auto any_other = [&](int i) { return name(static_cast<int>(std::floor(uniform(-1.0, i)))); };
+    for (int i = 0; i < n; ++i) {
+      description.coordinates.push_back({name(i), 1.0, 0.0, 0.0, {}});
+      description.springs.push_back({{name(i), i == 0 ? "ground" : any_other(i)}, {}, uniform(0.3, 3.0), {}});
+      description.held_forces.push_back({name(i), uniform(-1.0, 1.0), {}});
+      const double stiffness = std::pow(10.0, uniform(-2.0, 6.0));
+      if (uniform(0.0, 1.0) < 0.5)
+        description.stops.push_back(
+            {"stop" + name(i), {name(i), any_other(i)}, {}, uniform(-0.2, 0.5), stiffness, 0.0, {}});
+      else
+        description.sliders.push_back(
+            {"slider" + name(i), {any_other(i), name(i)}, {}, stiffness, uniform(0.0, 1.0), 1.0, {}});
+    }
+    const auto system = assembled(description);
+    const StaticEquilibrium found = find_equilibrium(system, {});
+    ASSERT_EQ(found.outcome, StaticOutcome::found) << trial;
+    EXPECT_LT(imbalance(system, found), 1e-8) << trial;
+  }
 }
 
 // Hinges at both ends of the beam leave two cantilevers: F H^3 / (3 EI) under F at each head.

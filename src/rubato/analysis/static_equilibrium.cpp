@@ -14,33 +14,25 @@ constexpr double small_pivot = 1e-8;
 // The motion that goes with it decides: its energy over the sum of the absolute terms of that energy. The same free
 // frame has 1e-17 with any number of elements; well supported it has 1e-6 with 60 and 3e-12 with 33,000.
 constexpr double no_energy = 16.0 * std::numeric_limits<double>::epsilon();
-constexpr double drift = 1e-9;   // of its stiffness that an open stop lends where nothing else resists
-constexpr double shift = 1e-12;  // of the inverse iteration; larger ones leave bending in the motion of a fine mesh
+constexpr double drift = 1e-9;       // of its stiffness that an open stop lends where nothing else resists
+constexpr double round_off = 1e-12;  // of a relative displacement: a step as short changes no contact
+constexpr double shift = 1e-12;      // of the inverse iteration; larger ones leave bending in the motion of a fine mesh
 
-/// Energy of the sliders and stops and their forces for given displacements.
+/// Forces of the sliders and stops for given displacements.
 class Contacts {
  public:
   explicit Contacts(const system::LocallyNonlinear& system) : system_(system), force(system.contact_count()) {}
 
-  /// Forces at q; returns the elastic energy less the friction work, the potential whose derivative they are.
-  double load(const Vector& q) {
-    double energy = 0.0;
+  void load(const Vector& q) {
     for (Index i = 0; i < system_.slider_count(); ++i) {
       const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
-      const double trial = slider.stiffness * system_.relative_displacement(i, q);
-      force[i] = std::clamp(trial, -slider.limit, slider.limit);
-      energy += (std::abs(trial) <= slider.limit ? 0.5 * trial * trial
-                                                 : slider.limit * (std::abs(trial) - 0.5 * slider.limit)) /
-                slider.stiffness;
+      force[i] = std::clamp(slider.stiffness * system_.relative_displacement(i, q), -slider.limit, slider.limit);
     }
     for (Index j = 0; j < system_.stop_count(); ++j) {
       const auto& stop = system_.stops()[static_cast<std::size_t>(j)];
       const Index i = system_.slider_count() + j;
-      const double depth = std::max(0.0, system_.relative_displacement(i, q) - stop.gap);
-      force[i] = stop.stiffness * depth;
-      energy += 0.5 * force[i] * depth;
+      force[i] = stop.stiffness * std::max(0.0, system_.relative_displacement(i, q) - stop.gap);
     }
-    return energy;
   }
   /// Sliders that stick and stops that are closed.
   std::vector<char> holding(const Vector& q) const {
@@ -97,9 +89,9 @@ class StaticSolver {
         set[static_cast<std::size_t>(met)] = 1;
         continue;
       }
-      step();
+      const bool has_settled = step();
       std::vector<char> next = contacts_.holding(result_.state.q);
-      if (next == set) {
+      if (has_settled && next == set) {
         for (int refinement = 0; refinement < 2; ++refinement) step();
         finish();
         return std::move(result_);
@@ -232,18 +224,53 @@ class StaticSolver {
       if (!(share[i] <= 1e-3 * share.maxCoeff())) result_.moving.push_back(free_[static_cast<std::size_t>(i)]);
   }
 
-  /// Residual f - K q - B fc of the free coordinates, at the forces that the sliders have at q.
-  void step() {
+  /// Newton's step for the set of the factor, shortened to where the energy is least along it. Says whether the whole
+  /// step was taken and no contact changed its state on the way: then q is the equilibrium of the set.
+  bool step() {
     Vector& q = result_.state.q;
-    const double before = energy(q);
     const Vector residual = unbalanced(q);
-    if (free_.empty()) return;
-    const Vector from = q, change = change_of(residual);
-    for (double length = 1.0; length > 1e-6; length *= 0.5) {
-      q = from + length * change;
-      // Without contacts the full step is exact, and round-off must not shorten it.
-      if (system_.contact_count() == 0 || energy(q) <= before + 1e-10 * std::abs(before)) return;
+    if (free_.empty()) return true;
+    const Vector change = change_of(residual);
+    const std::vector<double> changes = changes_along(q, change);
+    const double length = changes.empty() ? 1.0 : least_energy_along(q, change, changes);
+    q += length * change;
+    return changes.empty();
+  }
+
+  /// Where between 0 and 1 contacts change their states on the way along `change`, rising.
+  std::vector<double> changes_along(const Vector& q, const Vector& change) const {
+    std::vector<double> lengths;
+    for (Index i = 0; i < system_.contact_count(); ++i) {
+      const double u = system_.relative_displacement(i, q), rate = system_.relative_displacement(i, change);
+      const auto meet = [&](double threshold) {
+        if (!(std::abs(rate) > round_off * std::max(std::abs(u), std::abs(threshold)))) return;
+        const double length = (threshold - u) / rate;
+        if (length > 0.0 && length < 1.0) lengths.push_back(length);
+      };
+      if (i < system_.slider_count()) {
+        const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+        meet(slider.limit / slider.stiffness);
+        meet(-slider.limit / slider.stiffness);
+      } else {
+        meet(system_.stops()[static_cast<std::size_t>(i - system_.slider_count())].gap);
+      }
     }
+    std::sort(lengths.begin(), lengths.end());
+    return lengths;
+  }
+
+  /// The slope of the energy along `change` is straight between the changes of contacts, and rises.
+  double least_energy_along(const Vector& q, const Vector& change, std::vector<double> lengths) {
+    lengths.push_back(1.0);
+    double before = 0.0, slope_before = -change.dot(unbalanced(q));
+    for (const double length : lengths) {
+      const double slope = -change.dot(unbalanced(q + length * change));
+      if (slope >= 0.0)
+        return slope > slope_before ? before - (length - before) * slope_before / (slope - slope_before) : length;
+      before = length;
+      slope_before = slope;
+    }
+    return 1.0;
   }
 
   Vector unbalanced(const Vector& q) {
@@ -252,8 +279,6 @@ class StaticSolver {
     system_.add_slider_forces(contacts_.force, -1.0, residual);
     return residual;
   }
-
-  double energy(const Vector& q) { return 0.5 * q.dot(system_.stiffness() * q) - load_.dot(q) + contacts_.load(q); }
 
   void finish() {
     const Vector residual = unbalanced(result_.state.q);
