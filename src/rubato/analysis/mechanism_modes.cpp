@@ -211,6 +211,7 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
   write_modes(name, plan.modes.observed, {{0, modes.found}}, context.sink);
   write_configuration(name, mechanism.model(), std::span(state.q.data(), static_cast<std::size_t>(state.q.size())),
                       context.sink);
+  if (modes.is_stable) tell_round_off("", modes.found, report);
   if (modes.freedoms == 0)
     report.findings.push_back("there are no modes: the joints and locks leave no motion");
   else if (!modes.is_stable)
@@ -219,6 +220,12 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
         plan.about_equilibrium ? "equilibrium" : "configuration", modes.growth,
         plan.about_equilibrium ? "begin beside it to be led to one that is" : "about = \"static\" leads to one that is",
         modes.flutters ? "flutters, which loads without a potential make" : "goes away from it");
+  else if (!modes.found.has_converged)
+    report.message = fmt::format(
+        "the modes were not found to more than a few digits, the worst with a relative residual of {:.1e}; where light "
+        "or stiff parts are to be rigid, take ratios of their stiffness and mass to those of the others that are less "
+        "far from one, or joints",
+        modes.found.residual);
   else if (plan.modes.count > modes.freedoms)
     report.message =
         fmt::format("{} modes were asked for, and the joints leave {} motions", plan.modes.count, modes.freedoms);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace rubato::analysis {
@@ -58,14 +59,63 @@ std::string complaint(const std::vector<LimitModes>& all, Index count) {
                          std::min(found.missing, count), count, limits[limit]);
     if (held < count || !found.has_converged)
       return fmt::format(
-          "the modes of the limit {} did not converge: {} of {}, the worst with a relative residual of {:.1e}; ask for "
-          "fewer",
+          "the modes of the limit {} were not found to more than a few digits: {} of {}, the worst with a relative "
+          "residual of {:.1e}; ask for fewer, and where light or stiff parts are to be rigid take ratios of their "
+          "stiffness and mass to those of the others that are less far from one",
           limits[limit], held, count, found.residual);
   }
   return {};
 }
 
+constexpr double negligible = 1e-3;  // of the lowest frequency that is not zero, or of a mode's own: not worth a word
+
+double in_hertz(double angular_frequency) { return angular_frequency / (2.0 * std::numbers::pi); }
+
+/// "mode 3", "modes 1 to 3" (they follow one another but for rare exceptions)
+std::string numbers_of(const std::vector<std::size_t>& modes) {
+  return modes.size() == 1 ? fmt::format("mode {}", modes.front() + 1)
+                           : fmt::format("modes {} to {}", modes.front() + 1, modes.back() + 1);
+}
+
 }  // namespace
+
+void tell_round_off(const std::string& title, const numerics::DampedModes& found, RunReport& report) {
+  std::vector<std::size_t> rigid, poor;
+  double hidden = 0.0, lowest = std::numeric_limits<double>::infinity(), worst = 0.0;
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    const numerics::DampedMode& mode = found.modes[i];
+    const double omega = mode.angular_frequency;
+    if (omega == 0.0) {
+      rigid.push_back(i);
+      hidden = std::max(hidden, std::sqrt(mode.round_off));
+      continue;
+    }
+    lowest = std::min(lowest, omega);
+    // omega^2 changes by twice as much as omega.
+    const double share = 0.5 * mode.round_off / (omega * omega);
+    if (share > negligible) poor.push_back(i);
+    worst = std::max(worst, share);
+  }
+  if (!rigid.empty()) {
+    const bool is_one = rigid.size() == 1;
+    const std::string told = fmt::format("{}{} {} at 0 Hz: ", title, numbers_of(rigid), is_one ? "is" : "are");
+    if (hidden <= negligible * lowest && std::isfinite(lowest))
+      report.findings.push_back(told + (is_one ? "a rigid motion" : "rigid motions"));
+    else if (!std::isfinite(lowest))
+      report.findings.push_back(fmt::format("{}{}, or below the round-off of the stiffness, {:.2g} Hz", told,
+                                            is_one ? "a rigid motion" : "rigid motions", in_hertz(hidden)));
+    else
+      report.warnings.push_back(fmt::format(
+          "{}below the round-off of the stiffness; {} rigid, or anywhere up to {:.2g} Hz: very stiff parts move along, "
+          "whose rounding hides what holds them; take them less stiff",
+          told, is_one ? "it is" : "they are", in_hertz(hidden)));
+  }
+  if (!poor.empty())
+    report.warnings.push_back(fmt::format(
+        "{}{} {} known to {:.2g} % only, at worst: very stiff parts move along, and the rounding of their stiffness is "
+        "felt beside what holds them; take them less stiff",
+        title, numbers_of(poor), poor.size() == 1 ? "is" : "are", 100.0 * worst));
+}
 
 void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
                  results::Sink& sink) {
@@ -147,6 +197,7 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const system
     report.message = fmt::format("interrupted after {} of {} limits", all.size(), limit_count);
   }
   for (const auto& [limit, found] : all) {
+    tell_round_off(limit_count > 1 ? fmt::format("limit {}: ", limits[limit]) : "", found, report);
     report.statistics.emplace_back("residual_" + limits[limit], fmt::format("{:.1e}", found.residual));
     if (found.missing < 0) report.statistics.emplace_back("completeness_" + limits[limit], "not verified");
   }

@@ -31,6 +31,11 @@ struct LimitModes {
 void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
                  results::Sink& sink);
 
+/// Tells, of the modes of a limit, which are at 0 Hz and whether those are rigid motions or lie below the round-off of
+/// the stiffness, and which are known to a few digits only because of it.
+/// @param title  what they are of: "limit free: ", or nothing
+void tell_round_off(const std::string& title, const numerics::DampedModes& found, RunReport& report);
+
 /// One row a mode: limit, number, angular frequency, frequency, damping ratio, eigenvalue and shape (with phi^H M phi =
 /// 1; its imaginary part where damping makes a mode of either limit complex). Modes that did not converge, or that a
 /// count shows to be missing, are a failure; those found are written.

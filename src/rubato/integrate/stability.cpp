@@ -1,6 +1,7 @@
 #include <rubato/integrate/stability.hpp>
 
 #include <rubato/integrate/stepper.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
@@ -134,9 +135,10 @@ std::vector<Mode> modes_of(const system::LocallyNonlinear& system) {
   };
   constexpr Index all_modes = 1000;
   if (system.size() <= all_modes) {
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver{Matrix(stuck), Matrix(system.mass())};
-    for (Index i = 0; i < system.size(); ++i) add(solver.eigenvectors().col(i));
-    return modes;
+    const numerics::SymmetricModes found = numerics::all_modes(stuck, system.mass());
+    for (Index i = 0; i < found.shapes.cols(); ++i) add(found.shapes.col(i));
+    if (found.shapes.cols() == system.size()) return modes;
+    modes.clear();
   }
   // The highest mode by power iteration on M^-1 K from a vector that no symmetry leaves out; its Rayleigh quotient
   // comes from below, so one percent is added to the frequency.

@@ -1,6 +1,7 @@
 #include <rubato/numerics/complex_ldlt.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
 #include <rubato/numerics/eigen_quadratic.hpp>
+#include <rubato/numerics/scaled_residual.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -21,20 +22,28 @@ constexpr double equal = 1e-9;       // relative distance of eigenvalues that co
 constexpr double visible = 1e-9;     // change of a shape by coupling that is worth a complex mode
 constexpr double noise = 1e-13;      // of phi_i^T C phi_j, relative to the sizes of its terms
 constexpr int most_iterations = 12;
-constexpr double settled = 1e-13;  // relative change of s
-constexpr double same = 1e-8;      // relative distance of eigenvalues that may be one
+constexpr double settled = 1e-13;    // relative change of s
+constexpr double same = 1e-8;        // relative distance of eigenvalues that may be one
+constexpr double accurate = 1e-8;    // defect beyond which a mode is iterated on the full matrices
+constexpr double acceptable = 1e-4;  // defect of a mode that may be returned
 
 struct Structure {
   const SparseMatrix &stiffness, &damping, &mass;
 
-  // s^2 M + s C + K on x, and its largest entry relative to that of its terms.
-  double residual(Complex s, const ComplexVector& x) const {
-    const ComplexVector k = stiffness * x, c = s * (damping * x), m = s * s * (mass * x);
-    const Vector size = x.cwiseAbs();
-    const double terms = (stiffness.cwiseAbs() * size + std::abs(s) * (damping.cwiseAbs() * size) +
-                          std::norm(s) * (mass.cwiseAbs() * size))
-                             .maxCoeff();
-    return terms > 0.0 ? (k + c + m).cwiseAbs().maxCoeff() / terms : 0.0;
+  // s^2 M + s C + K on x
+  ScaledResidual residual(Complex s, const ComplexVector& x) const {
+    const ComplexVector left = stiffness * x + s * (damping * x) + s * s * (mass * x);
+    const Vector size =
+        stiffness.diagonal().cwiseAbs() + std::abs(s) * damping.diagonal().cwiseAbs() + std::norm(s) * mass.diagonal();
+    return {size, left, x};
+  }
+  // What the terms of x^H (s^2 M + s C + K) x are made of.
+  double energy(Complex s, const ComplexVector& x) const {
+    const ComplexVector k = stiffness * x, c = damping * x, m = mass * x;
+    return std::abs(x.dot(k)) + std::abs(s) * std::abs(x.dot(c)) + std::norm(s) * std::abs(x.dot(m));
+  }
+  double defect(const DampedMode& mode) const {
+    return residual(mode.eigenvalue, mode.shape).of_energy(energy(mode.eigenvalue, mode.shape));
   }
 };
 
@@ -181,13 +190,21 @@ class Refinement {
   ComplexLdlt factor_;
 };
 
-// Whether C leads out of the span of the shapes, by more than round-off.
+// Whether C leads out of the span of the shapes, by more than round-off: each against its own stiffness, so that a soft
+// dashpot counts beside one of a stiff part.
 bool leads_out(const Structure& structure, const SymmetricModes& undamped, const Matrix& damping) {
   const Matrix force = structure.damping * undamped.shapes;
   const Matrix outside = force - structure.mass * (undamped.shapes * damping);
   const Matrix terms = structure.damping.cwiseAbs() * undamped.shapes.cwiseAbs();
-  // Shapes of an iteration are known to about the root of its tolerance in the worst gaps.
-  return outside.cwiseAbs().maxCoeff() > 1e-8 * terms.maxCoeff();
+  const Vector stiff = structure.stiffness.diagonal().cwiseAbs(), heavy = structure.mass.diagonal();
+  for (Index j = 0; j < outside.cols(); ++j) {
+    const Vector weight =
+        (stiff + std::max(std::abs(undamped.eigenvalues[j]), undamped.round_off[j]) * heavy).cwiseInverse();
+    const double left = weight.dot(outside.col(j).cwiseAbs2()), all = weight.dot(terms.col(j).cwiseAbs2());
+    // Shapes of an iteration are known to about the root of its tolerance in the worst gaps.
+    if (std::sqrt(left) > 1e-8 * std::sqrt(all)) return true;
+  }
+  return false;
 }
 
 void sort_and_cut(std::vector<DampedMode>& modes, Index count) {
@@ -199,21 +216,26 @@ void sort_and_cut(std::vector<DampedMode>& modes, Index count) {
 }  // namespace
 
 DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatrix& damping, const SparseMatrix& mass,
-                                Index count) {
+                                Index count, const SparseMatrix* terms) {
   const Structure structure{stiffness, damping, mass};
   const Index n = mass.rows();
   DampedModes result;
   // Damped modes come in another order than undamped ones: some more of them take part.
   const bool is_full = n <= largest_full;
   const Index basis = is_full ? n : std::min(n, 2 * count + 10);
-  SymmetricModes undamped =
-      is_full || is_dense_eigenproblem(n, basis) ? all_modes(stiffness, mass) : lowest_modes(stiffness, mass, basis);
+  SymmetricModes undamped = is_full || is_dense_eigenproblem(n, basis) ? all_modes(stiffness, mass, terms)
+                                                                       : lowest_modes(stiffness, mass, basis, terms);
   if (!is_full && undamped.eigenvalues.size() > std::max(basis, largest_full)) {
     undamped.eigenvalues.conservativeResize(std::max(basis, largest_full));
+    undamped.round_off.conservativeResize(undamped.eigenvalues.size());
     undamped.shapes.conservativeResize(n, undamped.eigenvalues.size());
   }
   result.missing = undamped.missing;
   result.has_converged = undamped.has_converged;
+  if (undamped.eigenvalues.size() == 0) {
+    result.has_converged = false;
+    return result;
+  }
 
   Matrix modal = undamped.shapes.transpose() * (damping * undamped.shapes);
   separate_equal_modes(structure, undamped, modal);
@@ -221,6 +243,7 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
     if (group.size() == 1) {
       const Index i = group[0];
       DampedMode mode = real_mode(undamped.eigenvalues[i], modal(i, i), undamped.shapes.col(i));
+      mode.round_off = undamped.round_off[i];
       normalise(mass, mode.shape);
       result.modes.push_back(std::move(mode));
       continue;
@@ -240,10 +263,14 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
       result.modes.push_back(complex_mode(mode.eigenvalue, shapes * mode.shape, mass));
   }
   sort_and_cut(result.modes, count);
-  if (undamped.eigenvalues.size() < n && leads_out(structure, undamped, modal)) {
+  const bool is_complete = undamped.eigenvalues.size() == n;
+  const bool leaves = !is_complete && leads_out(structure, undamped, modal);
+  const auto is_poor = [&](const DampedMode& mode) { return mode.is_complex && !(structure.defect(mode) <= accurate); };
+  if (leaves || std::any_of(result.modes.begin(), result.modes.end(), is_poor)) {
     result.is_refined = true;
     Refinement refine(structure);
-    for (DampedMode& mode : result.modes) result.has_converged = refine(mode) && result.has_converged;
+    for (DampedMode& mode : result.modes)
+      if (leaves || is_poor(mode)) result.has_converged = refine(mode) && result.has_converged;
     sort_and_cut(result.modes, count);
     for (std::size_t i = 0; i + 1 < result.modes.size(); ++i) {
       const DampedMode &a = result.modes[i], &b = result.modes[i + 1];
@@ -253,9 +280,16 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
       if (std::abs(a.shape.dot(heavy)) > 1.0 - 1e-6) result.has_converged = false;
     }
   }
-  for (const DampedMode& mode : result.modes)
-    if (mode.is_complex || undamped.eigenvalues.size() == n)
-      result.residual = std::max(result.residual, structure.residual(mode.eigenvalue, mode.shape));
+  for (DampedMode& mode : result.modes) {
+    if (!mode.is_complex && !is_complete) continue;
+    result.residual = std::max(result.residual, structure.residual(mode.eigenvalue, mode.shape).backward());
+    if (!mode.is_complex) continue;
+    const Vector size = mode.shape.cwiseAbs();
+    const double all = terms ? size.dot(*terms * size) : size.dot(stiffness.cwiseAbs() * size);
+    const double energy = structure.energy(mode.eigenvalue, mode.shape);
+    mode.round_off = energy > 0.0 ? 2.0 * unit * all / energy * std::norm(mode.eigenvalue) : 2.0 * unit * all;
+    if (!(structure.defect(mode) <= acceptable)) result.has_converged = false;
+  }
   result.residual = std::max(result.residual, undamped.residual);
   return result;
 }

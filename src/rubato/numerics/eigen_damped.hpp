@@ -17,11 +17,13 @@ struct DampedMode {
   /// phi^H M phi = 1; the entry of the largest modulus is real and positive [n]
   Eigen::VectorXcd shape;
   bool is_complex = false;  ///< C couples it to others: its coordinates do not move in phase
+  /// By how much the rounding of the entries of K may have changed angular_frequency^2 [rad2/s2].
+  double round_off = 0.0;
 };
 
 struct DampedModes {
   std::vector<DampedMode> modes;  ///< by rising angular frequency
-  double residual = 0.0;          ///< largest, of s^2 M + s C + K on a mode, relative to its terms [-]
+  double residual = 0.0;          ///< largest ScaledResidual::backward of s^2 M + s C + K on a mode [-]
   Index missing = 0;              ///< as in SymmetricModes, of the undamped modes
   bool has_converged = true;
   bool is_refined = false;  ///< large model: modes of the projection on the undamped ones, then iterated to round-off
@@ -36,9 +38,11 @@ struct DampedModes {
 ///
 /// Up to 400 coupled coordinates all modes take part, and the result is complete. Beyond, the undamped modes up to
 /// twice as many as wanted span the motion; where C couples to others, each mode is then iterated on the full matrices
-/// (inverse iteration with the quotient x^T (s^2 M + s C + K) x = 0; Parlett and Chen 1990) until s stands. That two
-/// of them are not the same is checked; that none between them is missing is not.
+/// (inverse iteration with the quotient x^T (s^2 M + s C + K) x = 0; Parlett and Chen 1990) until s stands, as is each
+/// coupled mode that its residual shows to be poor. That two of them are not the same is checked; that none between
+/// them is missing is not.
+/// @param terms  as of lowest_modes
 DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatrix& damping, const SparseMatrix& mass,
-                                Index count);
+                                Index count, const SparseMatrix* terms = nullptr);
 
 }  // namespace rubato::numerics

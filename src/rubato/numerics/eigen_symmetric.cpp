@@ -1,5 +1,8 @@
+#include <rubato/numerics/compensated.hpp>
+#include <rubato/numerics/eigen_graded.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
+#include <rubato/numerics/scaled_residual.hpp>
 
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Eigenvalues>
@@ -19,17 +22,24 @@ constexpr Index dense_size = 400;  // below, the dense solver takes less than ha
 constexpr double lanczos_tolerance = 1e-12;
 constexpr Index most_restarts = 300;
 constexpr int most_rounds = 20;        // of searching for what is missing
-constexpr double least_pivot = 1e-11;  // relative: K with a smaller one is as good as singular
-constexpr double safe_pivot = 1e-10;   // relative: the sign of a smaller one is not to be trusted
+constexpr Index graded_size = 1000;    // up to it the graded solver takes less than a minute
+constexpr double least_pivot = 1e-13;  // relative: K with a smaller one is as good as singular
+constexpr double safe_pivot = 1e-13;   // over the largest: the sign of a smaller one is not to be trusted
 constexpr double most_growth = 1e6;    // of pivots over the matrix: beyond, elimination without pivoting lost digits
 constexpr double distinct = 1e-7;      // relative gap that a count can stand in
+constexpr double accurate = 1e-8;      // defect beyond which the dense solver gives way to the graded one
+constexpr double acceptable = 1e-4;    // defect of modes that may be returned: 1e-8 of omega^2
+constexpr double entry_error = 2.0;    // of K by assembly and by the formulas of elements, in units of round-off
+constexpr double worth = 1e-10;        // relative round-off of omega^2 from which products are formed exactly
 
 struct Problem {
   SparseMatrix stiffness, mass;
-  Vector size;               // |K_ii| + M_ii: what a diagonal entry of K - s M is made of
   double unit_square = 1.0;  // what an eigenvalue of 1 here is outside [rad2/s2]
+  double lowest = 1.0;       // of K_ii / M_ii where it is not zero
 
   SparseMatrix shifted(double s) const { return SparseMatrix(stiffness - s * mass); }
+  // What the diagonal of K - s M is made of: the measure of its pivots, light and heavy coordinates alike.
+  Vector size(double s) const { return stiffness.diagonal().cwiseAbs() + std::abs(s) * Vector(mass.diagonal()); }
 };
 
 // Scaled so that the highest eigenvalue is of the order of one and masses are too: Spectra's floors are absolute.
@@ -37,8 +47,10 @@ Problem scaled(const SparseMatrix& stiffness, const SparseMatrix& mass) {
   const double heavy = mass.diagonal().mean();
   double stiff = (stiffness.diagonal().array().abs() / mass.diagonal().array()).maxCoeff();
   if (!(stiff > 0.0)) stiff = 1.0;
-  Problem problem{SparseMatrix(stiffness / (stiff * heavy)), SparseMatrix(mass / heavy), {}, stiff};
-  problem.size = problem.stiffness.diagonal().cwiseAbs() + problem.mass.diagonal();
+  Problem problem{SparseMatrix(stiffness / (stiff * heavy)), SparseMatrix(mass / heavy), stiff, 1.0};
+  for (Index i = 0; i < mass.rows(); ++i)
+    if (const double own = std::abs(stiffness.coeff(i, i)) / (mass.coeff(i, i) * stiff); own > 0.0)
+      problem.lowest = std::min(problem.lowest, own);
   return problem;
 }
 
@@ -117,6 +129,12 @@ Search search(const Problem& problem, const OrderedFactor& factor, double shift,
   solver.compute(Spectra::SortRule::LargestMagn, most_restarts, lanczos_tolerance, Spectra::SortRule::SmallestAlge);
   result.has_converged = solver.info() == Spectra::CompInfo::Successful;
   result.shapes = solver.eigenvectors();
+  // Iteration leaves noise that is small beside the mass; one product more makes it small beside the stiffness too.
+  for (Index j = 0; j < result.shapes.cols(); ++j) {
+    const Vector heavy = problem.mass * result.shapes.col(j);
+    inverse.perform_op(heavy.data(), result.shapes.col(j).data());
+    result.shapes.col(j) /= std::sqrt(result.shapes.col(j).dot(problem.mass * result.shapes.col(j)));
+  }
   return result;
 }
 
@@ -129,25 +147,26 @@ void rotate_to_modes(const Problem& problem, Matrix& shapes, Vector& eigenvalues
   eigenvalues = small.eigenvalues();
 }
 
-bool is_safely_definite(const Problem& problem, const Vector& pivots) {
-  return (pivots.array() > least_pivot * problem.size.array()).all() && std::isfinite(pivots.sum());
+bool is_safely_definite(const Problem& problem, double shift, const Vector& pivots) {
+  return (pivots.array() > least_pivot * problem.size(shift).array()).all() && std::isfinite(pivots.sum());
 }
 
 // The number of eigenvalues below s; nothing where round-off could have turned a sign.
 std::optional<Index> eigenvalues_below(const Problem& problem, OrderedFactor& factor, double s) {
   if (!factor.factorise(problem.shifted(s), Pivots::nonzero)) return std::nullopt;
   const Vector pivots = factor.pivots();
-  const auto relative = pivots.array().abs() / problem.size.array();
-  if (!(relative.minCoeff() > safe_pivot) || !(relative.maxCoeff() < most_growth)) return std::nullopt;
+  const Vector relative = pivots.cwiseAbs().cwiseQuotient(problem.size(s));
+  const double most = std::max(1.0, relative.maxCoeff());
+  if (!(relative.minCoeff() > safe_pivot * most) || !(most < most_growth)) return std::nullopt;
   return static_cast<Index>((pivots.array() < 0.0).count());
 }
 
 // A shift below the spectrum at which K - s M is safely positive definite; its factor is left in `factor`.
 double shift_below(const Problem& problem, OrderedFactor& factor, double start) {
   double shift = start;
-  for (int i = 0; i < 40; ++i) {
-    if (factor.factorise(problem.shifted(shift)) && is_safely_definite(problem, factor.pivots())) return shift;
-    shift = shift == 0.0 ? -1e-6 : 10.0 * shift;
+  for (int i = 0; i < 60; ++i) {
+    if (factor.factorise(problem.shifted(shift)) && is_safely_definite(problem, shift, factor.pivots())) return shift;
+    shift = shift == 0.0 ? -std::min(1e-6, 1e-3 * problem.lowest) : 10.0 * shift;
   }
   return shift;
 }
@@ -157,7 +176,7 @@ double shift_below(const Problem& problem, OrderedFactor& factor, double start) 
 std::optional<Index> missing_below(const Problem& problem, OrderedFactor& factor, const Vector& eigenvalues,
                                    Index wanted) {
   const Index held = eigenvalues.size();
-  const double scale = std::max(std::abs(eigenvalues[held - 1]), least_pivot);
+  const double scale = std::max(std::abs(eigenvalues[held - 1]), unit * problem.lowest);
   const double margin = distinct * scale;
   Index found = std::min(wanted, held) - 1;
   while (found > 0 && !(eigenvalues[found] - eigenvalues[found - 1] > margin)) --found;
@@ -167,11 +186,30 @@ std::optional<Index> missing_below(const Problem& problem, OrderedFactor& factor
   return std::nullopt;
 }
 
-void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, SymmetricModes& modes) {
+// phi^T K phi and K phi as if with twice the digits.
+double exact_energy(const SparseMatrix& stiffness, const Vector& shape, Vector& force) {
+  std::vector<Compensated> rows(static_cast<std::size_t>(shape.size()));
+  for (Index column = 0; column < stiffness.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator entry(stiffness, column); entry; ++entry)
+      rows[static_cast<std::size_t>(entry.row())].add_product(entry.value(), shape[column]);
+  Compensated energy;
+  for (Index i = 0; i < shape.size(); ++i) {
+    const Compensated& row = rows[static_cast<std::size_t>(i)];
+    force[i] = row.value();
+    energy.add_product(shape[i], row.sum());
+    energy.add_product(shape[i], row.lost());
+  }
+  return energy.value();
+}
+
+void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix* terms, SymmetricModes& modes) {
   const Index k = modes.shapes.cols();
-  const double floor = (16.0 + std::sqrt(static_cast<double>(mass.rows()))) * unit;
-  const SparseMatrix size = stiffness.cwiseAbs(), weight = mass.cwiseAbs();
+  const SparseMatrix moduli = stiffness.cwiseAbs();
+  const SparseMatrix& size = terms ? *terms : moduli;
+  const double plain = (16.0 + std::sqrt(static_cast<double>(mass.rows()))) * unit;  // round-off of a sum as it comes
+  const Vector stiff = stiffness.diagonal().cwiseAbs(), heavy = mass.diagonal();
   modes.eigenvalues.resize(k);
+  modes.round_off.resize(k);
   for (Index j = 0; j < k; ++j) {
     Vector shape = modes.shapes.col(j);
     Index largest = 0;
@@ -179,29 +217,37 @@ void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, SymmetricMo
     // The first of those that share the largest value: round-off must not choose between them.
     while (largest + 1 < shape.size() && !(std::abs(shape[largest]) >= most * (1.0 - 1e-6))) ++largest;
     shape *= std::copysign(1.0, shape[largest]) / std::sqrt(shape.dot(mass * shape));
-    const Vector stiff = stiffness * shape, heavy = mass * shape, magnitude = shape.cwiseAbs();
-    const double energy = shape.dot(stiff);
-    modes.eigenvalues[j] = std::abs(energy) <= floor * magnitude.dot(size * magnitude) ? 0.0 : energy;
-    const Vector terms = size * magnitude + std::abs(energy) * (weight * magnitude);
-    const double scale = terms.maxCoeff();
-    if (scale > 0.0)
-      modes.residual = std::max(modes.residual, (stiff - modes.eigenvalues[j] * heavy).cwiseAbs().maxCoeff() / scale);
+    const Vector magnitude = shape.cwiseAbs();
+    const double all = magnitude.dot(size * magnitude);
+    modes.round_off[j] = entry_error * unit * all;
+    Vector force = stiffness * shape;
+    double energy = shape.dot(force);
+    if (plain * all > worth * std::abs(energy)) energy = exact_energy(stiffness, shape, force);
+    modes.eigenvalues[j] = std::abs(energy) <= modes.round_off[j] ? 0.0 : energy;
+    const Vector residual = force - modes.eigenvalues[j] * (mass * shape);
+    const ScaledResidual scaled(stiff + std::abs(energy) * heavy, residual, shape);
+    modes.residual = std::max(modes.residual, scaled.backward());
+    modes.defect = std::max(modes.defect, scaled.of_energy(std::abs(modes.eigenvalues[j])));
     modes.shapes.col(j) = shape;
   }
+  modes.has_converged = modes.has_converged && modes.defect <= acceptable;
   // Quotients of nearly equal modes may come out of order.
   std::vector<Index> order(static_cast<std::size_t>(k));
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return modes.eigenvalues[a] < modes.eigenvalues[b]; });
-  const Vector eigenvalues = modes.eigenvalues;
+  const Vector eigenvalues = modes.eigenvalues, round_off = modes.round_off;
   const Matrix shapes = modes.shapes;
   for (Index j = 0; j < k; ++j) {
-    modes.eigenvalues[j] = eigenvalues[order[static_cast<std::size_t>(j)]];
-    modes.shapes.col(j) = shapes.col(order[static_cast<std::size_t>(j)]);
+    const Index from = order[static_cast<std::size_t>(j)];
+    modes.eigenvalues[j] = eigenvalues[from];
+    modes.round_off[j] = round_off[from];
+    modes.shapes.col(j) = shapes.col(from);
   }
 }
 
-SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count) {
+SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count,
+                               const SparseMatrix* terms) {
   const Index n = mass.rows();
   const Problem problem = scaled(stiffness, mass);
   OrderedFactor factor;
@@ -238,10 +284,8 @@ SymmetricModes by_shift_invert(const SparseMatrix& stiffness, const SparseMatrix
   }
   if (modes.missing < -1) modes.missing = -1;
   modes.has_converged = modes.has_converged && modes.shapes.cols() >= count;
-  finish(stiffness, mass, modes);
-  const Index kept = std::min(count, modes.shapes.cols());
-  modes.shapes.conservativeResize(n, kept);
-  modes.eigenvalues.conservativeResize(kept);
+  modes.shapes.conservativeResize(n, std::min(count, modes.shapes.cols()));
+  finish(stiffness, mass, terms, modes);
   return modes;
 }
 
@@ -256,26 +300,33 @@ std::optional<Index> modes_below(const SparseMatrix& stiffness, const SparseMatr
 
 bool is_dense_eigenproblem(Index size, Index count) { return size <= dense_size || 3 * count > size; }
 
-SymmetricModes all_modes(const SparseMatrix& stiffness, const SparseMatrix& mass) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver{Matrix(stiffness), Matrix(mass)};
+SymmetricModes all_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix* terms) {
+  const Matrix k(stiffness), m(mass);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(k, m);
   SymmetricModes modes;
-  if (solver.info() != Eigen::Success) {
-    modes.has_converged = false;
-    modes.eigenvalues = Vector(0);
-    modes.shapes = Matrix(mass.rows(), 0);
-    return modes;
-  }
-  modes.shapes = solver.eigenvectors();
-  finish(stiffness, mass, modes);
-  return modes;
+  modes.shapes = Matrix(mass.rows(), 0);
+  if (solver.info() == Eigen::Success && solver.eigenvectors().allFinite()) modes.shapes = solver.eigenvectors();
+  finish(stiffness, mass, terms, modes);
+  if (modes.shapes.cols() == mass.rows() && modes.defect <= accurate) return modes;
+  modes.has_converged = modes.has_converged && modes.shapes.cols() == mass.rows();
+  if (mass.rows() > graded_size) return modes;
+  const std::optional<Matrix> shapes = graded_shapes(k, m);
+  if (!shapes) return modes;
+  SymmetricModes graded;
+  graded.shapes = *shapes;
+  finish(stiffness, mass, terms, graded);
+  return modes.shapes.cols() < mass.rows() || graded.defect < modes.defect ? graded : modes;
 }
 
-SymmetricModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count) {
-  if (!is_dense_eigenproblem(mass.rows(), count)) return by_shift_invert(stiffness, mass, count);
-  SymmetricModes modes = all_modes(stiffness, mass);
+SymmetricModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, Index count,
+                            const SparseMatrix* terms) {
+  const Index n = mass.rows();
+  if (!is_dense_eigenproblem(n, count)) return by_shift_invert(stiffness, mass, count, terms);
+  SymmetricModes modes = all_modes(stiffness, mass, terms);
   const Index kept = std::min(count, modes.shapes.cols());
   modes.eigenvalues.conservativeResize(kept);
-  modes.shapes.conservativeResize(mass.rows(), kept);
+  modes.round_off.conservativeResize(kept);
+  modes.shapes.conservativeResize(n, kept);
   return modes;
 }
 

@@ -1,11 +1,11 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/assemble.hpp>
 #include <rubato/system/assembled_model.hpp>
 #include <rubato/system/eliminate_supports.hpp>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -93,15 +93,19 @@ SparseMatrix modal_damping(const model::ModalDampingRatios& damping, const Spars
         fmt::format("damping: modal_ratio lists {} ratios for {} damped modes; give one for all, or one "
                     "a mode",
                     given, damped));
-  const Matrix dense_mass(mass);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes{Matrix(stiffness), dense_mass};
-  if (modes.info() != Eigen::Success) throw InvalidInput("the modes of the model without sliders were not found");
+  const numerics::SymmetricModes modes = numerics::all_modes(stiffness, mass);
+  if (!modes.has_converged)
+    throw InvalidInput(
+        "damping by modes: the modes of the model without sliders were not found to more than a few digits: "
+        "stiffnesses "
+        "and masses are too far apart; bring them closer together, or take damping = { rayleigh = { mass = ..., "
+        "stiffness = ... } }");
   Vector weight = Vector::Zero(n);
   for (Index i = 0; i < damped; ++i) {
     const double ratio = damping.ratios[static_cast<std::size_t>(given == 1 ? 0 : i)];
-    weight[i] = 2.0 * ratio * std::sqrt(std::max(modes.eigenvalues()[i], 0.0));
+    weight[i] = 2.0 * ratio * std::sqrt(std::max(modes.eigenvalues[i], 0.0));
   }
-  const Matrix shapes = dense_mass * modes.eigenvectors();
+  const Matrix shapes = mass * modes.shapes;
   Matrix product = shapes * weight.asDiagonal() * shapes.transpose();
   product = 0.5 * (product + product.transpose()).eval();
   // Modes of parts that are not joined cancel but for round-off; zeros keep the pattern of the structure.

@@ -1,7 +1,6 @@
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/numerics/eigen_unsymmetric.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -12,6 +11,8 @@ namespace {
 
 constexpr double round_off = 1e-13;      // of the stiffness, over its size
 constexpr Index most_unsymmetric = 400;  // seconds
+constexpr double neutral = 100.0;        // of round-off: what the tolerance of an equilibrium leaves of omega^2 = 0
+constexpr double reduction_error = 8.0;  // of products with N, in units of that of the entries of K
 
 /// An orthonormal basis of the motions that the constraints leave [n x freedoms].
 Matrix motions_left(const SparseMatrix& jacobian) {
@@ -68,16 +69,18 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
     result.is_stable = result.growth == 0.0;
   } else {
     const SparseMatrix even_mass = symmetric(mass), stiffness = symmetric(tangent);
-    // Generalised, so that the signs are those of omega^2; round-off of K makes no motion unstable.
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> signs(Matrix(stiffness), Matrix(even_mass),
-                                                                 Eigen::EigenvaluesOnly);
-    const Vector squares = signs.eigenvalues();
+    // What the entries of N^T K N are sums of: more than they are, where what is stiff is held.
+    const Matrix moduli = basis.cwiseAbs();
+    const SparseMatrix terms = symmetric(reduction_error * reduced(linear.stiffness.cwiseAbs(), moduli));
+    // Round-off of K, which all_modes takes for nothing, makes no motion unstable.
+    const numerics::SymmetricModes undamped = numerics::all_modes(stiffness, even_mass, &terms);
+    const double lowest = undamped.eigenvalues.size() > 0 ? undamped.eigenvalues[0] : 0.0;
     result.leaves_out_skew = result.skew > round_off;
-    result.is_stable = squares[0] >= -round_off * squares.cwiseAbs().maxCoeff();
-    if (!result.is_stable) result.growth = std::sqrt(-squares[0]);
+    result.is_stable = undamped.eigenvalues.size() == 0 || lowest >= -neutral * undamped.round_off[0];
+    if (!result.is_stable) result.growth = std::sqrt(-lowest);
     if (result.is_stable)
-      result.found =
-          numerics::lowest_damped_modes(stiffness, symmetric(damping), even_mass, std::min(count, result.freedoms));
+      result.found = numerics::lowest_damped_modes(stiffness, symmetric(damping), even_mass,
+                                                   std::min(count, result.freedoms), &terms);
     else if (result.freedoms <= most_unsymmetric)  // the only route that knows modes which grow
       result.found =
           numerics::lowest_unsymmetric_modes(0.5 * (tangent + tangent.transpose()), damping, mass, 2 * result.freedoms);

@@ -1,6 +1,8 @@
 #include <rubato/integrate/steady/condensed_structure_routes.hpp>
 
 #include <rubato/integrate/steady/trigonometric_series.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
+#include <rubato/numerics/scaled_residual.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -29,9 +31,6 @@ class RealModes final : public CondensedStructure::Route {
   RealModes(const Columns& columns, Matrix shapes, Vector squares, Vector damping)
       : columns_(columns), shapes_(std::move(shapes)), squares_(std::move(squares)), damping_(std::move(damping)) {
     highest_ = squares_.maxCoeff();
-    // A mode at rest is one whose frequency is lost in the round-off of the others.
-    for (double& square : squares_)
-      if (std::abs(square) <= 1e-13 * static_cast<double>(squares_.size()) * highest_) square = 0.0;
     set_loads();
   }
 
@@ -148,16 +147,15 @@ class ComplexModes final : public CondensedStructure::Route {
 }  // namespace
 
 std::unique_ptr<CondensedStructure::Route> real_modes(const Columns& columns) {
-  const Matrix mass = columns.system.mass(), stiffness = columns.system.stiffness();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes(stiffness, mass);
-  if (modes.info() != Eigen::Success) return nullptr;
-  const Matrix& shapes = modes.eigenvectors();
+  const numerics::SymmetricModes modes = numerics::all_modes(columns.system.stiffness(), columns.system.mass());
+  if (!modes.has_converged) return nullptr;
+  const Matrix& shapes = modes.shapes;
   const Matrix modal = shapes.transpose() * (columns.system.damping() * shapes);
   const Vector damping = modal.diagonal();
   const Matrix rest = modal - Matrix(damping.asDiagonal());
   // What is left out beside the diagonal is a change of C by this part of it, of the order of round-off.
   if (!(rest.cwiseAbs().maxCoeff() <= 1e-12 * damping.cwiseAbs().maxCoeff())) return nullptr;
-  return std::make_unique<RealModes>(columns, shapes, modes.eigenvalues(), damping);
+  return std::make_unique<RealModes>(columns, shapes, modes.eigenvalues, damping);
 }
 
 std::unique_ptr<CondensedStructure::Route> complex_modes(const Columns& columns) {
@@ -179,6 +177,16 @@ std::unique_ptr<CondensedStructure::Route> complex_modes(const Columns& columns)
   input.bottomRows(n) = inverse.solve(Matrix::Identity(n, n)).cast<Complex>();
   const ComplexMatrix shares = left.solve(input);  // [2n x n]: of a force, into each mode
   ComplexMatrix shapes = vectors.topRows(n);
+  // The iteration loses low roots in the round-off of high ones, where masses or stiffnesses are far apart.
+  constexpr double acceptable = 1e-6;
+  for (Index r = 0; r < 2 * n; ++r) {
+    const Complex s = roots[r];
+    const ComplexVector x = shapes.col(r), force = stiffness * x + s * (damping * x) + s * s * (mass * x);
+    const Vector size =
+        stiffness.diagonal().cwiseAbs() + std::abs(s) * damping.diagonal().cwiseAbs() + std::norm(s) * mass.diagonal();
+    const double energy = std::abs(x.dot(stiffness * x)) + std::norm(s) * std::abs(x.dot(mass * x));
+    if (!(numerics::ScaledResidual(size, force, x).of_energy(energy) <= acceptable)) return nullptr;
+  }
   // Symmetric matrices make each share a multiple of the shape itself: fold its root into the shape.
   for (Index r = 0; r < 2 * n; ++r) {
     Index largest = 0;

@@ -1,7 +1,7 @@
 #include <rubato/integrate/steady/lane_map_parts.hpp>
 #include <rubato/integrate/steady/stepper_map.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ LaneMap::LaneMap(const Method& method, const system::LocallyNonlinear& system, c
       system_(system) {
   const Matrix mass(system.mass());
   unit_mass_ = mass.trace() / static_cast<double>(n_);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver{Matrix(system.stiffness()), mass};
-  modes_ = std::sqrt(unit_mass_) * solver.eigenvectors();
+  const numerics::SymmetricModes found = numerics::all_modes(system.stiffness(), system.mass());
+  modes_ = std::sqrt(unit_mass_) * found.shapes;
   to_modes_ = modes_.transpose() * mass / unit_mass_;
-  stiffness_ = solver.eigenvalues().asDiagonal();
+  stiffness_ = found.eigenvalues.asDiagonal();
   damping_ = modes_.transpose() * Matrix(system.damping()) * modes_ / unit_mass_;
   Matrix between = damping_;
   between.diagonal().setZero();
