@@ -126,6 +126,19 @@ int main(int argc, char** argv) {
   example->add_option("name", example_name, "an example");
   example->add_option("folder", example_folder, "where to copy it (default: a folder of its name)");
 
+  app::CompareOptions compare_options;
+  auto* compare = cli.add_subcommand(
+      "compare",
+      "two results side by side: the largest difference of each column (status 0: within --tolerance; 1: not)");
+  compare->add_option("first", compare_options.first, "a folder of results (-o of `rubato run`)")->required();
+  compare->add_option("second", compare_options.second, "another one")->required();
+  compare
+      ->add_option("--tolerance", compare_options.tolerance,
+                   "of differences over the largest value of their column (default: 1e-6)")
+      ->type_name("NUMBER")
+      ->check(CLI::NonNegativeNumber.description(""));
+  compare->add_flag("--all", compare_options.all, "tell every column, equal ones too");
+
   auto* schema = cli.add_subcommand("schema", "print the JSON schema of the study file, for editors");
 
   try {
@@ -145,6 +158,7 @@ int main(int argc, char** argv) {
     }
     if (*example)
       return finish(example_name.empty() ? app::list_examples() : app::copy_example(example_name, example_folder));
+    if (*compare) return finish(app::compare(compare_options));
     if (*schema) fmt::print("{}", io::study_schema());
     return finish(app::exit_done);
   } catch (const InvalidInput& fault) {
