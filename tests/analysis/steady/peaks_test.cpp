@@ -87,6 +87,42 @@ TEST(Peaks, AtACornerHaveNoSlope) {
   EXPECT_TRUE(std::isnan(peaks[0].slope));
 }
 
+// Each bend has its top on the other side of the corner: Newton's method goes to and fro between them.
+TEST(Peaks, AtACornerOfTwoBendsAreNotTakenForTheTopOfEither) {
+  const double corner = 1.43;
+  const auto bends = [=](double x) {
+    const double d = x - corner;
+    return d < 0.0 ? 1.0 + 0.2 * d - 2.0 * d * d : 1.0 - 0.5 * d - 20.0 * d * d;
+  };
+  const auto peaks = find_peaks(curves(bends), {1.0, 2.0, 9, {}});
+  ASSERT_EQ(peaks.size(), 1u);
+  EXPECT_NEAR(peaks[0].at, corner, 1e-5);
+  EXPECT_NEAR(peaks[0].value, 1.0, 1e-5);
+  EXPECT_TRUE(std::isnan(peaks[0].slope));
+}
+
+// Nine samples lie 0.5 apart and see one top of three; peaks are as wide as 0.1.
+TEST(Peaks, ThatAreCloseAreSeenByTheExtremesOfACoarseCurve) {
+  const auto bump = [](double x, double at, double height) { return height / (1.0 + std::pow((x - at) / 0.05, 2)); };
+  const auto exact = [=](double x) {
+    return 1.0 / (1.0 + 0.1 * x) + bump(x, 2.55, 1.0) + bump(x, 2.78, 1.04) + bump(x, 4.21, 0.5);
+  };
+  PeakRange range{1.0, 5.0, 9, {}};
+  int looks = 0;
+  const Curves coarse = [&](double x, Vector& values) {
+    ++looks;
+    values.setConstant(1, exact(x) * (1.0 + 1e-3 * std::sin(3.0 * x)));
+    return true;
+  };
+  range.besides = find_extremes(coarse, range);
+  EXPECT_LT(looks, 120);
+  EXPECT_EQ(range.besides.size(), 6u);  // three tops, and the dips before, between and behind
+  const auto peaks = find_peaks(curves(exact), range);
+  ASSERT_EQ(peaks.size(), 4u);  // with the lower end
+  EXPECT_NEAR(peaks[0].at, 2.78, 5e-3);
+  EXPECT_NEAR(peaks[1].at, 2.55, 5e-3);
+}
+
 TEST(Peaks, AreFoundThoughSomePointsHaveNoValue) {
   const Oscillator oscillator{3.0, 0.05};
   const Curves holes = [=](double x, Vector& values) {

@@ -48,12 +48,14 @@ void DamperPeaks::require_structure(double point) {
   if (plan_.structure_follows_frequency) wanted.push_back(point);
   if (structure_ && wanted == structure_values_) return;
   solver_.reset();
+  coarse_.reset();
   free_.reset();
   stuck_.reset();
   structure_.reset();
   structure_ =
       std::make_unique<system::AssembledModel>(build_structure(input_.study, drive_.parameters_at(values_, point)));
   solver_ = make_.response(structure_->system, plan_.request);
+  coarse_ = make_.coarse(structure_->system, plan_.request);
   natural_ = natural_frequencies(structure_->system);
   structure_values_ = std::move(wanted);
 }
@@ -126,12 +128,28 @@ PeakRange DamperPeaks::range() {
   return range;
 }
 
+/// Besides where a coarse scan has extremes: of two close peaks the samples alone might show one. What it finds does
+/// not depend on what was solved before, and its points are not told of.
+PeakRange DamperPeaks::range_with_extremes() {
+  PeakRange wanted = range();
+  const Scan told = scan_;
+  const double solves = solves_;
+  coarse_->forget();
+  const auto extremes = find_extremes(
+      [&](double w, Vector& values) { return !stop_.load() && take_point(w) && evaluate(*coarse_, w, values); },
+      wanted);
+  wanted.besides.insert(wanted.besides.end(), extremes.begin(), extremes.end());
+  scan_ = told;
+  solves_ = solves;
+  return wanted;
+}
+
 std::vector<Peak> DamperPeaks::peaks(double parameter) {
   scan_ = {};
   if (!take(parameter, true)) return {};
   return find_peaks(
       [&](double w, Vector& values) { return !stop_.load() && take_point(w) && evaluate(*solver_, w, values); },
-      range());
+      range_with_extremes());
 }
 
 std::optional<Peak> DamperPeaks::follow(double parameter, const Peak& known) {

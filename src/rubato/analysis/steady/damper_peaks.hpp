@@ -58,6 +58,7 @@ class DamperPeaks final : public PeakFamily {
   void require_structure(double point);
   bool evaluate(integrate::SteadySolver& solver, double angular_frequency, Vector& values);
   PeakRange range();
+  PeakRange range_with_extremes();
 
   const DamperCurvePlan& plan_;
   const StudyInput& input_;
@@ -68,7 +69,7 @@ class DamperPeaks final : public PeakFamily {
   std::vector<double> values_;  ///< of the swept parameters, and the curve's own
   std::unique_ptr<system::AssembledModel> structure_;
   std::vector<double> structure_values_;  ///< what it was built with
-  std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
+  std::unique_ptr<integrate::SteadySolver> solver_, coarse_, free_, stuck_;
   Vector natural_;  ///< natural frequencies of both limits [rad/s]
   integrate::Excitation excitation_;
   integrate::SteadyResponse response_;

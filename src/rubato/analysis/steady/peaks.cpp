@@ -1,7 +1,9 @@
 #include <rubato/analysis/steady/peaks.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 namespace rubato::analysis {
 namespace {
@@ -9,7 +11,10 @@ namespace {
 constexpr double difference = 3e-6;    // of x: third differences and round-off of the curves disturb equally
 constexpr double settled = 1e-9;       // of x, Newton's last step
 constexpr double close_enough = 2e-3;  // of the bracket, for Newton to start
+constexpr double round_off = 1e-10;    // of a value, of curves exact to 1e-13
 constexpr int most_parabolas = 40, most_newton = 12;
+constexpr double resolved = 1e-2;  // of a curve, which the cubic through samples may miss between them
+constexpr int least_halvings = 1, most_halvings = 5;
 
 struct Bracket {
   double low, middle, high;           // x
@@ -82,13 +87,15 @@ class Search {
       if (!(next >= low && next <= high)) return std::nullopt;
       x = next;
     }
-    return peak;
+    return std::nullopt;  // it goes to and fro over a corner
   }
 
   std::optional<Peak> climb(Bracket bracket) {
     const double low = bracket.low, high = bracket.high;
     if (!narrow(bracket)) return std::nullopt;
-    if (auto peak = finish(bracket.middle, low, high)) return peak;
+    // What lies lower, beyond round-off, is the top of another bend.
+    const double least = bracket.at_middle - round_off * std::abs(bracket.at_middle);
+    if (auto peak = finish(bracket.middle, low, high); peak && peak->value >= least) return peak;
     // No curvature to trust: a corner of the curve. It is where the bracket closes.
     for (int i = 0; i < 5; ++i)
       if (!narrow(bracket)) return std::nullopt;
@@ -102,9 +109,8 @@ class Search {
   Vector values_;
 };
 
-}  // namespace
-
-std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
+/// Where curves are looked at: equally spaced, and besides.
+std::vector<double> places_of(const PeakRange& range) {
   std::vector<double> places;
   const int samples = std::max(range.samples, 3);
   for (int i = 0; i < samples; ++i) places.push_back(range.from + (range.to - range.from) * i / (samples - 1));
@@ -114,7 +120,86 @@ std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
         std::none_of(places.begin(), places.end(), [&](double y) { return std::abs(x - y) < nearest; }))
       places.push_back(x);
   std::sort(places.begin(), places.end());
+  return places;
+}
 
+/// A place where curves were looked at.
+struct Sample {
+  double x = 0.0;
+  Vector y;                              // [c]; empty where there is no value
+  bool is_new = false, is_rough = true;  // of the last halving; what lies to the right is not resolved
+};
+
+/// The cubic through four samples.
+Vector cubic(const std::array<const Sample*, 4>& through, double x) {
+  Vector sum = Vector::Zero(through[0]->y.size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    double weight = 1.0;
+    for (std::size_t j = 0; j < 4; ++j)
+      if (j != i) weight *= (x - through[j]->x) / (through[i]->x - through[j]->x);
+    sum += weight * through[i]->y;
+  }
+  return sum;
+}
+
+/// Marks what lies beside new samples as rough where the cubic through the four old ones around them misses them.
+void judge(std::vector<Sample>& samples) {
+  for (Sample& one : samples) one.is_rough = false;
+  std::vector<std::size_t> old;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (!samples[i].is_new && samples[i].y.size() > 0) old.push_back(i);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (!samples[i].is_new || samples[i].y.size() == 0 || old.size() < 4) continue;
+    const auto right = std::upper_bound(old.begin(), old.end(), i) - old.begin();
+    const auto first =
+        static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(right - 2, 0, static_cast<std::ptrdiff_t>(old.size()) - 4));
+    std::array<const Sample*, 4> around{};
+    for (std::size_t j = 0; j < 4; ++j) around[j] = &samples[old[first + j]];
+    const Vector& now = samples[i].y;
+    Vector largest = now.cwiseAbs();
+    for (const Sample* one : around) largest = largest.cwiseMax(one->y.cwiseAbs());
+    if (((cubic(around, samples[i].x) - now).array().abs() > resolved * largest.array()).any())
+      samples[i - 1].is_rough = samples[i].is_rough = true;
+  }
+  for (Sample& one : samples) one.is_new = false;
+}
+
+}  // namespace
+
+std::vector<double> find_extremes(const Curves& curves, const PeakRange& range) {
+  std::vector<Sample> samples;
+  const auto sample = [&](double x) {
+    Sample now{x, {}};
+    if (!curves(x, now.y) || !now.y.allFinite()) now.y.resize(0);
+    return now;
+  };
+  for (const double x : places_of(range)) samples.push_back(sample(x));
+  for (int level = 0; level < most_halvings; ++level) {
+    std::vector<Sample> finer;
+    bool has_grown = false;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      finer.push_back(samples[i]);
+      if (i + 1 == samples.size() || (level >= least_halvings && !samples[i].is_rough)) continue;
+      finer.push_back(sample(0.5 * (samples[i].x + samples[i + 1].x)));
+      finer.back().is_new = has_grown = true;
+    }
+    if (!has_grown) break;
+    judge(finer);
+    samples = std::move(finer);
+  }
+  std::vector<Sample> known;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(known),
+               [](const Sample& one) { return one.y.size() > 0; });
+  std::vector<double> extremes;
+  for (std::size_t i = 1; i + 1 < known.size(); ++i) {
+    const Vector before = known[i].y - known[i - 1].y, after = known[i + 1].y - known[i].y;
+    if ((before.array() * after.array() < 0.0).any()) extremes.push_back(known[i].x);
+  }
+  return extremes;
+}
+
+std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
+  const std::vector<double> places = places_of(range);
   std::vector<double> x;
   std::vector<Vector> y;
   Vector values;

@@ -58,6 +58,9 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
   solvers.stuck = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
     return linear(route, system, request, true);
   };
+  solvers.coarse = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
+    return system.slider_count() == 0 ? linear(route, system, request, false) : harmonic_balance({}, system, request);
+  };
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
     if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);

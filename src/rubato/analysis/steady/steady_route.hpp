@@ -36,6 +36,7 @@ struct SteadySolvers {
                                                                       const integrate::SteadyRequest&)>;
   Make response;     ///< with friction
   Make free, stuck;  ///< the two linear limits
+  Make coarse;       ///< with friction, to about a thousandth, at a small part of the cost
 };
 
 /// The solvers of a route. A system without sliders is linear: unless it is marched, its response is that of the free
