@@ -222,6 +222,18 @@ class Report(unittest.TestCase):
         text = self.browser.script("return document.querySelector('main').textContent")
         self.assertIn("Kink: two peaks or coordinates are equal there", text)
 
+    def test_the_peaks_of_a_sweep_are_joined_within_a_combination_only(self):
+        number = self.figure("dampers", "All peaks that were tracked")
+        self.choose(number, "mu = 0.3")
+        lines = self.browser.wait(f"""
+            const plot = document.querySelector('#figure-{number} .plot');
+            return plot.data.map((line) => [line.name, Array.from(line.x), Array.from(line.y)])""")
+        self.assertEqual([line[0] for line in lines], ["Peak 1", "Peak 1", "Peak 2", "Peak 2"])
+        preloads = [5.0 * k for k in range(1, 21)]
+        for _, x, _ in lines:
+            self.assertEqual(x, preloads, "a line runs once along the parameter")
+        self.assertEqual(lines[0][2], [4.0 - 0.01 * 0.3 * preload for preload in preloads])
+
     def test_a_mode_is_chosen_and_shown_in_bars_over_the_coordinates(self):
         number = self.figure("modes", "Shape of a mode")
         bars = f"return document.querySelectorAll('#figure-{number} .barlayer path').length"

@@ -260,6 +260,33 @@ void add_damper_curve(results::Sink& sink) {
   sink.conclude(name, "done", "", {});
 }
 
+void add_swept_damper_curve(results::Sink& sink) {
+  const std::string name = "dampers";
+  results::TableLayout layout{name,
+                              "",
+                              "point",
+                              {column("mu", ""), column("N0", ""), column("angular_frequency", "rad/s"),
+                               column("objective", "m"), column("status", "1", "", {}, statuses)},
+                              {{"type", "damper_curve"}, {"parameter", "N0"}, {"swept_parameters", "mu"}}};
+  results::TableLayout tracked{name,
+                               "peaks",
+                               "point",
+                               {column("mu", ""), column("N0", ""), column("peak", "1"),
+                                column("angular_frequency", "rad/s"), column("objective", "m")},
+                               {}};
+  std::vector<std::vector<double>> rows, peaks;
+  for (const double mu : {0.2, 0.3, 0.5})
+    for (int k = 1; k <= 20; ++k) {
+      const double preload = 5.0 * k, falling = 4.0 - 0.01 * mu * preload, rising = 3.0 + 0.01 * mu * preload;
+      rows.push_back({mu, preload, falling > rising ? 7.5 : 8.0, std::max(falling, rising), 0.0});
+      peaks.push_back({mu, preload, 1.0, 7.5, falling});
+      peaks.push_back({mu, preload, 2.0, 8.0, rising});
+    }
+  add_table(sink, layout, rows);
+  add_table(sink, tracked, peaks);
+  sink.conclude(name, "done", "", {});
+}
+
 void add_modes(results::Sink& sink) {
   const std::vector<std::string> coordinates{"disk1", "blade1", "disk2", "blade2", "damper"};
   results::TableLayout layout{"modes", "", "mode", {column("limit", "1", "", {}, {"free", "stuck"})}, {}};

@@ -17,6 +17,8 @@ void add_random_sweep(results::Sink& sink);
 
 /// A damper curve over 60 preloads with its optimum and the tracked peaks.
 void add_damper_curve(results::Sink& sink);
+/// Of three coefficients of friction, with two peaks each.
+void add_swept_damper_curve(results::Sink& sink);
 
 /// Modes of five coordinates, free and stuck.
 void add_modes(results::Sink& sink);

@@ -275,6 +275,7 @@ void write_sample_results(const std::filesystem::path& file) {
   add_grid_sweep(sink);
   add_random_sweep(sink);
   add_damper_curve(sink);
+  add_swept_damper_curve(sink);
   add_modes(sink);
   add_scene(sink);
   add_mechanism_modes(sink);

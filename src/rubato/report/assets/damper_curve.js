@@ -132,9 +132,9 @@ function optimum_table(table, optimum) {
 }
 
 /** Rows of equal keys, wherever they stand: [{keys, rows: [index, ...]}]. For short tables that are shown whole. */
-function rows_by(table, keys) {
+function rows_by(table, keys, rows = table.overview[0][0].map((_, row) => row)) {
   const groups = new Map();
-  for (let row = 0; row < table.overview[0][0].length; ++row) {
+  for (const row of rows) {
     const values = keys.map((key) => table.overview[key][0][row]);
     const name = values.join(" ");
     if (!groups.has(name)) groups.set(name, {keys: values, rows: []});
@@ -148,13 +148,22 @@ function peaks_tracked_figure(table, main) {
   const parameter = variable_of(table, main.variables[main.curves.abscissa].name);
   const frequency = variable_of(table, "angular_frequency"), amplitude = variable_of(table, "amplitude") ?? variable_of(table, "objective");
   if (number < 0 || !parameter || !amplitude || table.is_envelope) return null;
-  const labels = label_chooser(amplitude);
+  // A sweep has peaks of every combination of its values: those of one are shown at a time.
+  const swept = main.curves.keys.map((key) => table.variables.findIndex((variable) => variable.name === main.variables[key].name));
+  const combinations = rows_by(table, swept.filter((key) => key >= 0));
+  const names = combinations.map((combination) => curve_name(main, combination, varying_keys(main)));
+  const choosers = [];
+  const add = (chooser) => (chooser ? choosers.push(chooser) - 1 : -1);
+  const combination_at = add(combinations.length > 1 ? {label: "Combination", options: names} : null);
+  const label_at = add(label_chooser(amplitude));
   return make_figure({
     caption: "All peaks that were tracked: their values (top) and frequencies (bottom). The damper curve is the highest of them.",
-    choosers: labels ? [labels] : [], height: 520,
-    draw: ([label = 0]) => {
+    choosers, height: 520,
+    draw: (chosen) => {
+      const label = label_at < 0 ? 0 : chosen[label_at];
+      const {rows} = combinations[combination_at < 0 ? 0 : chosen[combination_at]];
       const traces = [];
-      for (const group of rows_by(table, [number])) {
+      for (const group of rows_by(table, [number], rows)) {
         const pick = (variable, which) => group.rows.map((row) => table.overview[variable.index][which][row]);
         const style = {type: "scatter", mode: "lines+markers", x: pick(parameter, 0), name: `Peak ${value_text(table.variables[number], group.keys[0])}`,
                        legendgroup: String(group.keys[0]), line: {...line_style(traces.length / 2), dash: "solid"}, marker: {size: 4}};
