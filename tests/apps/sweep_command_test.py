@@ -64,6 +64,22 @@ class Sweep(unittest.TestCase):
     def bytes_of(self, folder):
         return {path.name: path.read_bytes() for path in (self.folder / folder).glob("*.csv")}
 
+    def test_says_that_what_is_set_of_a_parameter_with_values_of_its_own_is_ignored(self):
+        self.write(3, 2)
+        with open(self.folder / "study.toml", "a") as study:
+            study.write('[[analysis]]\nname = "curve"\ntype = "damper_curve"\nparameter = "N0"\nrange = [1, 2]\n'
+                        'angular_frequency = { from = 0.5, to = 2 }\noptimum = false\n')
+        warnings = "".join(
+            f'study.toml: warning: analysis "{analysis}": --set {name}={value} does not change the model of this analysis: '
+            f'{source} gives "{name}" its values; change them in the study\n' for analysis, name, value, source in [
+                ("frf", "Omega", 3, "the list of frequencies"), ("frf", "k", 2, "the sweep"), ("frf", "N0", 0.5, "the sweep"),
+                ("curve", "Omega", 3, "the range of frequencies"), ("curve", "N0", 0.5, "the range of the curve")])
+        settings = ["--set", "N0=0.5", "--set", "k=2", "--set", "Omega=3"]
+        self.assertEqual(self.run_command("check", "study.toml", *settings).stderr, warnings)
+        result = self.run_command("run", "study.toml", "-o", "out", "--quiet", *settings)
+        self.assertEqual((result.returncode, result.stderr), (0, warnings))
+        self.assertEqual(self.run_command("check", "study.toml").stderr, "")
+
     def test_writes_the_columns_of_the_contract(self):
         self.write(11, 2)
         result = self.run_command("run", "study.toml", "-o", "out")

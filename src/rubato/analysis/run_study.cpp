@@ -61,6 +61,7 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
   result.expected_bytes = 36.0 *  // 8 of them in the journal
                           (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
+  result.warnings = plan.warnings;
   result.summary = fmt::format("frequency response, {}, {} lines of {} points", route_name(plan.route.kind),
                                plan.sweep.lines(), plan.steps.size());
   return result;
@@ -73,6 +74,7 @@ AnalysisOutline outline(const DamperCurvePlan& plan, const system::LocallyNonlin
   result.points = plan.points();
   result.expected_bytes = 36.0 * 2.0 * plan.points() * columns;  // peaks and limits are about as many again
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points();
+  result.warnings = plan.warnings;
   result.summary = fmt::format("damper curve over {}, {} lines of {} values", plan.parameter, plan.sweep.lines(),
                                plan.values.size());
   return result;

@@ -155,7 +155,7 @@ class Warnings {
       : plan_(plan), input_(input), counts_(counts), family_(family) {}
 
   std::vector<std::string> all() {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = plan_.warnings;
     if (const Tally& negative = counts_.negative_loads; negative.count > 0.0) {
       const auto scan = scan_of(negative.first);
       const std::string which =

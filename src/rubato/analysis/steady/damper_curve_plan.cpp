@@ -173,6 +173,10 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
                     "{}: reduce it, or sweep a frequency_response with solver = \"harmonic_balance\" over \"{}\"",
                     title, integrate::largest_exact, input.system.size(), plan.parameter));
   require_ends(plan, input, title, where);
+  std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the range of frequencies"},
+                                                         {parameter, "the range of the curve"}};
+  for (const std::size_t swept : plan.sweep.places()) given.emplace_back(swept, "the sweep");
+  plan.warnings = warn_of_settings(input, given);
   return plan;
 }
 

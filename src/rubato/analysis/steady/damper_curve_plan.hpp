@@ -33,6 +33,8 @@ struct DamperCurvePlan {
   bool limits_follow_parameter = false;  ///< the linear limits
   std::vector<bool> is_structural = {};  ///< of each swept parameter: whether it changes the structure
 
+  std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
+
   double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(values.size()); }
   /// +1 where the lowest objective is best, -1 where the highest is.
   double sign() const { return objective == Objective::amplitude ? 1.0 : -1.0; }

@@ -134,7 +134,7 @@ std::string drift_text(const FrequencyResponsePlan& plan, const Vector& drift) {
 /// @param solver  solves points again to say more of them; null: it must not take the time
 std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const StudyInput& input,
                                      const SweepCounts& counts, PieceSolver* solver) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = plan.warnings;
   const auto split = [&](double point) {
     const auto line = static_cast<long>(point / static_cast<double>(plan.steps.size()));
     return std::pair(

@@ -206,6 +206,9 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   plan_request(plan, description, input, title, where);
   plan_waveforms(plan, description, input, title, where);
   require_ends(plan, input, title, where);
+  std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the list of frequencies"}};
+  for (const std::size_t place : plan.sweep.places()) given.emplace_back(place, "the sweep");
+  plan.warnings = warn_of_settings(input, given);
   plan.route.linear.points = static_cast<Index>(plan.frequencies.size());
   return plan;
 }

@@ -6,6 +6,7 @@
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 
+#include <string>
 #include <vector>
 
 namespace rubato::analysis {
@@ -39,6 +40,8 @@ struct FrequencyResponsePlan {
   std::vector<bool> is_structural = {};  ///< of each swept parameter: whether it changes the structure
   std::vector<bool> is_linear = {};      ///< whether it changes the linear limits
   std::vector<bool> divides_lanes = {};  ///< whether lines of different values cannot be solved side by side
+
+  std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
 
   double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(steps.size()); }
   /// How many points are solved one after another: all of a line where each depends on the one before, else a number

@@ -94,6 +94,22 @@ ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size
   return ParameterDependence(input.study, input.parameters, varied);
 }
 
+std::vector<std::string> warn_of_settings(const StudyInput& input,
+                                          const std::vector<std::pair<std::size_t, std::string>>& varied) {
+  std::vector<std::string> warnings;
+  for (const auto& [place, source] : varied) {
+    const std::string& name = input.parameters[place].first;
+    const auto is_it = [&](const auto& setting) { return setting.first == name; };
+    const auto setting = std::find_if(input.overrides.begin(), input.overrides.end(), is_it);
+    if (setting == input.overrides.end()) continue;
+    warnings.push_back(
+        fmt::format("--set {}={:.6g} does not change the model of this analysis: {} gives \"{}\" its "
+                    "values; change them in the study",
+                    name, setting->second, source, name));
+  }
+  return warnings;
+}
+
 void require_effect(const ParameterDependence& dependence, std::size_t parameter, const NamedParameter& named,
                     const std::vector<std::string>& columns, const std::string& kind, const std::string& title) {
   if (!dependence.reaches_anything(parameter))

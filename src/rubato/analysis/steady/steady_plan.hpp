@@ -35,6 +35,11 @@ std::size_t excitation_parameter(const NamedParameter& wanted, const VariedParam
 /// The dependence where some parameters are given values: those that are varied, and those of --set.
 ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size_t> varied);
 
+/// A warning for every parameter of --set to which an analysis gives values of its own: what is set does nothing there.
+/// @param varied  places of parameters, and what gives them their values: "its sweep"
+std::vector<std::string> warn_of_settings(const StudyInput& input,
+                                          const std::vector<std::pair<std::size_t, std::string>>& varied);
+
 /// Throws InvalidInput for a varied parameter on which nothing depends, or whose name another column of results has.
 /// @param kind  what it is called: "swept parameter"
 void require_effect(const ParameterDependence& dependence, std::size_t parameter, const NamedParameter& named,
