@@ -171,7 +171,7 @@ def _static(study, model, analysis, table, pairs):
     allowed = 1e-9 + 1e-14 * min(condition, 1e12)
     checks = []
     weights = numpy.sqrt(numpy.abs(numpy.diag(model.stuck_stiffness())))
-    size = max(numpy.max(numpy.abs(state.q) * weights), 1e-25)
+    size = max(numpy.max(numpy.abs(state.q) * weights), 1e-20)
     for i, coordinate in enumerate(model.names):
         header = _columns_of(model, coordinate)[0]
         if table.has(header):
@@ -256,7 +256,7 @@ def _transient(study, model, analysis, table, pairs):
         factor = 10 if not contacts else 50 if located else 300
         allowed = factor * tolerance + 1e-9
         if step.get("controller", "pi") != "pi" or step.get("estimator") == "inertia_jump":
-            allowed = 0.5  # its tolerance is not that of the error, or it only watches
+            allowed = 2.0  # its tolerance is not that of the error, or it only watches
         elif set(output) & {"interval", "times"}:
             allowed = 2 * allowed + 1e-3
         checks.append(("position", e, allowed))
@@ -374,7 +374,11 @@ def _modes(study, model, analysis, table, pairs):
             if whole:
                 norm = abs(numpy.conj(shape) @ model.M @ shape)
                 checks.append((f"{limit} mode {place + 1} mass of shape", abs(norm - 1), 1e-6))
-                if ratios[i] <= 1:
+                if given == 0:  # told as a rigid motion: far below the lowest that is not
+                    others = [o for o in omegas[rows] if o > 0]
+                    checks.append((f"{limit} mode {place + 1} at rest", omega[min(place, len(omega) - 1)],
+                                   1e-4 * min(others, default=largest)))
+                elif ratios[i] <= 1:
                     checks.append((f"{limit} mode {place + 1} residual", modes.residual(model, limit, given, shape),
                                    1.0))
         count = int(study.number(analysis["count"])) if "count" in analysis else 20
@@ -426,13 +430,14 @@ def _frequency_response(study, model, analysis, table, pairs):
             fundamental, answers, condition = steady.linear(now)
             waves, offsets = None, False
             allowed = (1e-8 if solver != "time_marching" else 4 * asked) + 1e-14 * condition
-        amplitudes = {}
+        amplitudes, roots = {}, {}
         for coordinate in _observed(analysis, now):
             row = now.row(coordinate)
             if waves:
                 x, v = motion["q"] @ row, motion["v"] @ row
             else:
                 x, v = (steady.wave(fundamental, answers, row, d) for d in (0, 1))
+            roots[coordinate] = numpy.sqrt(numpy.mean(x * x))
             rotation = any(now.rotation[j] for j in numpy.nonzero(row)[0])
             words = ("angle_amplitude [rad]", "angular_velocity_amplitude [rad/s]", "angle_mean [rad]") if rotation else (
                 "amplitude [m]", "velocity_amplitude [m/s]", "mean [m]")
@@ -460,6 +465,10 @@ def _frequency_response(study, model, analysis, table, pairs):
                         if size == 0 and table.column(header)[i] == 0:
                             error = 0.0
                         checks.append((f"row {i} {header}", error, allowed * (5 if "velocity" in word else 1)))
+                header = f"{coordinate}.{'angle_rms [rad]' if turns else 'rms [m]'}"
+                if table.has(header) and not offsets and _condition(now.stuck_stiffness()) < 1e12:
+                    checks.append((f"row {i} {header}", abs(table.column(header)[i] - roots[coordinate]) / max(size, 1e-300),
+                                   allowed))
                 header = f"{coordinate}.phase [rad]"
                 if table.has(header) and abs(first) > 1e-6 * size:
                     turned = numpy.exp(1j * table.column(header)[i]) - first / abs(first)
@@ -501,7 +510,8 @@ def _damper_curve(study, model, analysis, table, pairs):
     """At each value the amplitude where the command sees the highest peak, and that it is the highest of a scan."""
     name = analysis["name"]
     parameter = analysis.get("excitation") or _excitation(study)
-    values, objective = table.column("angular_frequency [rad/s]"), table.column("objective")
+    values, objective = table.column("angular_frequency [rad/s]"), table.column(next(
+        h for h in table.head if h.startswith("objective")))
     over, status = analysis["parameter"], table.text("status")
     in_hertz = "frequency" in analysis
     limits = [

@@ -11,7 +11,7 @@ Operators, from the loosest to the tightest: `? :` (right), `||`, `&&`, the six 
 import math
 import re
 
-CONSTANTS = {"pi": math.pi, "_pi": math.pi, "_e": math.e}
+CONSTANTS = {"pi": math.pi}
 
 
 class FormulaError(Exception):
@@ -104,7 +104,7 @@ _SMOOTH = {
     "log10": (math.log10, lambda x: 1 / (x * math.log(10)), lambda x: -1 / (x * x * math.log(10))),
     "sqrt": (math.sqrt, lambda x: 0.5 * x**-0.5, lambda x: -0.25 * x**-1.5),
 }
-_CHOOSING = {"abs": 1, "sign": 1, "rint": 1, "min": None, "max": None, "sum": None, "avg": None}
+_CHOOSING = {"abs": 1, "sign": 1, "rint": 1, "min": None, "max": None, "sum": None, "avg": None, "atan2": 2}
 
 _decisions = None
 
@@ -135,11 +135,17 @@ def _call(name, arguments):
     if name == "sign":
         return float(_decide((values[0] > 0) - (values[0] < 0)))
     if name == "rint":
-        return float(_decide(round(values[0])))
+        return float(_decide(math.floor(values[0] + 0.5)))
     if name == "min":
         return arguments[_decide(values.index(min(values)))]
     if name == "max":
         return arguments[_decide(values.index(max(values)))]
+    if name == "atan2":
+        if any(isinstance(a, Jet) for a in arguments):
+            y, x = (_lift(a) for a in arguments)
+            slope = _divide(_add(_mul(x, Jet(y.d, y.dd)), _neg(_mul(y, Jet(x.d, x.dd)))), _add(_mul(x, x), _mul(y, y)))
+            return Jet(math.atan2(y.v, x.v), slope.v, slope.d)
+        return math.atan2(*values)
     if name in ("sum", "avg"):
         total = 0.0
         for a in arguments:
@@ -270,8 +276,9 @@ class Formula:
                 self._take(",")
                 arguments.append(self._ternary())
             self._take(")")
-            if (token in _SMOOTH or _CHOOSING[token] == 1) and len(arguments) != 1:
-                raise FormulaError(f"{self.text!r}: {token} takes one argument")
+            takes = 1 if token in _SMOOTH else _CHOOSING[token]
+            if takes not in (None, len(arguments)):
+                raise FormulaError(f"{self.text!r}: {token} takes {takes} arguments")
             return lambda e: _call(token, [a(e) for a in arguments])
         if token not in self._names and token not in CONSTANTS:
             raise FormulaError(f"{self.text!r}: unknown name {token}")

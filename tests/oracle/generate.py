@@ -589,7 +589,8 @@ class Generator:
         if solver and solver != "periodic" and self.chance(0.4):
             part["tolerance"] = self.number(self.random.choice([1e-2, 1e-3, 1e-4]))
         if self.chance(0.2):
-            part["waveforms"] = {"at": [self.omega], "points": 32}
+            at = part["angular_frequency"]
+            part["waveforms"] = {"at": [at[0] if isinstance(at, list) else at["from"]], "points": 32}
         if self.chance(0.15):
             part["start"] = self.random.choice(["unloaded", "previous", "rest"])
             if part["start"] == "previous" and self.chance(0.5):

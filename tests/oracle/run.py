@@ -70,6 +70,7 @@ def main():
     parser.add_argument("studies", nargs="+", help="seeds, ranges of them (1-200), study files, or a list of these: @FILE")
     parser.add_argument("--keep", help="a folder for the studies on which the two differ")
     parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--first", action="store_true", help="end at the first study that differs")
     parser.add_argument("--keys", action="store_true", help="count the outcomes by the keys of the study as well")
     parser.add_argument("--seconds", type=float, default=20, help="of processor time for an analysis by the oracle")
     options = parser.parse_args()
@@ -78,6 +79,8 @@ def main():
     by_key = collections.defaultdict(collections.Counter)
     differing = []
     for seed in wanted(options.studies):
+        if options.first and differing:
+            break
         with tempfile.TemporaryDirectory() as scratch:
             name = seed if isinstance(seed, int) else pathlib.Path(seed).stem
             folder = pathlib.Path(options.keep) / str(name) if options.keep else pathlib.Path(scratch)

@@ -116,11 +116,11 @@ class FormulaLaw:
         self.formula = formula
 
     def value(self, t, side=0):
-        """At `t`; with side -1 or +1 just before or after, where the formula may switch."""
-        return float(self.formula(t=beside(t, side)))
+        """At `t`; with side -1 or +1 just before or after, where the formula may switch. No time precedes the study."""
+        return float(self.formula(t=beside(t, side) if t or side > 0 else 0.0))
 
     def motion(self, t, side=0):
-        jet = self.formula(t=Jet(beside(t, side), 1.0, 0.0))
+        jet = self.formula(t=Jet(beside(t, side) if t or side > 0 else 0.0, 1.0, 0.0))
         return (jet.v, jet.d, jet.dd) if isinstance(jet, Jet) else (float(jet), 0.0, 0.0)
 
     def switches(self, begin, end, samples=5003):

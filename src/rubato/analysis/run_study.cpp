@@ -17,7 +17,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace rubato::analysis {
@@ -214,27 +213,6 @@ std::vector<std::string> warnings_of(const Plan& plan) {
   return warnings;
 }
 
-bool has_static_state(const model::AnalysisDescription& analysis) {
-  const auto* transient = std::get_if<model::TransientDescription>(&analysis.task);
-  return std::holds_alternative<model::StaticDescription>(analysis.task) || (transient && transient->initial);
-}
-
-/// What is held acts in static states: a study without one would pass it over.
-void warn_of_held(const model::StudyDescription& study, std::vector<std::string>& warnings) {
-  if (std::any_of(study.analyses.begin(), study.analyses.end(), has_static_state)) return;
-  const auto warn = [&](const std::string& part, const std::string& remedy) {
-    warnings.push_back(
-        fmt::format("{} acts in static states only, and no analysis of the study has one: start a transient "
-                    "by initial = \"static\", or {}",
-                    part, remedy));
-  };
-  for (const auto& force : study.model.held_forces)
-    warn(fmt::format("the force held on \"{}\"", force.on), "give the force a law of time");
-  for (const auto& displacement : study.model.displacements)
-    warn(fmt::format("the displacement held at \"{}\"", displacement.on),
-         "give the coordinate a position, or the displacement a law of time");
-}
-
 AnalysisOutline check_mechanism(const model::AnalysisDescription& analysis, const StudyInput& input) {
   const system::Mechanism& mechanism = *input.mechanism;
   if (const auto* transient = std::get_if<model::TransientDescription>(&analysis.task)) {
@@ -288,10 +266,7 @@ RunReport run_mechanism_analysis(const model::AnalysisDescription& analysis, con
 }  // namespace
 
 AnalysisOutline check_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
-  if (input.mechanism) return check_mechanism(analysis, input);
-  AnalysisOutline outline = std::visit(Check{analysis, input}, analysis.task);
-  warn_of_held(input.study, outline.warnings);
-  return outline;
+  return input.mechanism ? check_mechanism(analysis, input) : std::visit(Check{analysis, input}, analysis.task);
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyInput& input, RunContext& context) {
@@ -302,7 +277,6 @@ RunReport run_analysis(const model::AnalysisDescription& analysis, const StudyIn
   } catch (const Stopped&) {
     report = {RunStatus::interrupted, "interrupted before it had more to keep", {}};
   }
-  if (!input.mechanism) warn_of_held(input.study, report.warnings);
   // Modes have written the configuration about which they are.
   if (input.mechanism && !std::holds_alternative<model::ModesDescription>(analysis.task))
     write_structure(analysis.name, input.mechanism->model(), context.sink);

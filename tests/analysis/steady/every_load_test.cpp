@@ -504,23 +504,6 @@ TEST(LoadThatDoesNotRepeat, IsRefusedByEverySteadyResponseWithItsName) {
     }
 }
 
-TEST(LoadThatIsHeld, IsToldToDoNothingWhereNoAnalysisHasAStaticState) {
-  const std::string text = parameters + lumped().text + "[[force]]\non = \"a\"\nheld = 3.0\n" +
-                           "[[displacement]]\non = \"b\"\nvalue = 0.1\n[[force]]\non = \"b\"\n" + harmonic("2.0");
-  const std::string rest = "[[analysis]]\nname = \"rest\"\ntype = \"static\"\n";
-  const auto warnings = [&](const std::string& analyses) {
-    const testing::PreparedStudy prepared(text + analyses);
-    return check_analysis(prepared.study.analyses.front(), prepared.input()).warnings;
-  };
-  for (const std::string& analysis : {response("response", ""), marched}) {
-    ASSERT_EQ(warnings(analysis).size(), 2u);
-    EXPECT_THAT(warnings(analysis)[0], HasSubstr("the force held on \"a\" acts in static states only"));
-    EXPECT_THAT(warnings(analysis)[1], HasSubstr("the displacement held at \"b\" acts in static states only"));
-    EXPECT_TRUE(warnings(analysis + rest).empty());
-  }
-  EXPECT_TRUE(warnings(marched + "initial = \"static\"\n").empty());
-}
-
 // m q'' + k q = 3 from rest: q = 3/k (1 - cos(w t)).
 TEST(FormulaWithoutTime, IsAStaticLoadOfTheExactFlowAndOfMethodStudies) {
   const std::string mass = R"(

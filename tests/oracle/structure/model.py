@@ -379,10 +379,10 @@ def _damping(study, model):
         omega = numpy.sqrt(numpy.where(squares > round_off, squares, 0.0))
         ratio = part["modal_ratio"]
         ratios = numpy.zeros(len(free))
-        if isinstance(ratio, list):
+        if isinstance(ratio, list) and len(ratio) > 1:
             ratios[:len(ratio)] = study.numbers(ratio)
         else:
-            ratios[:] = study.number(ratio)
+            ratios[:] = study.number(ratio[0] if isinstance(ratio, list) else ratio)
         if "modes" in part:
             ratios[int(study.number(part["modes"])):] = 0.0
         damping = mass @ phi @ numpy.diag(2 * ratios * omega) @ phi.T @ mass
