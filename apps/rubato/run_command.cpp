@@ -27,6 +27,7 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <set>
 #include <thread>
 
 namespace rubato::app {
@@ -91,9 +92,10 @@ Journals open_journals(const PreparedStudy& study, const RunOptions& options, co
   return journals;
 }
 
-void tell_of_damage(const Journals& journals) {
+void tell_of_damage(const Journals& journals, bool quiet) {
   for (const auto& journal : journals)
-    if (journal && !journal->damage().empty()) tell("warning: --resume: " + journal->damage());
+    if (journal && !journal->damage().empty() && !(quiet && journal->is_cut_short()))
+      tell((journal->is_cut_short() ? "--resume: " : "warning: --resume: ") + journal->damage());
 }
 
 /// Tells which analyses begin anew, which --resume does not say: only sweeps go on where they stopped.
@@ -220,15 +222,15 @@ std::vector<std::string> tables_in(const std::filesystem::path& folder) {
   return files;
 }
 
-/// Tables of a former run that these results do not have go to a folder of their own, so that the tables, results.nc
+/// Tables of a former run that this one has not written go to a folder of their own, so that the tables, results.nc
 /// and the report are of one run. What Rubato did not write stays where it is.
-void set_former_aside(const std::vector<std::string>& former, const std::filesystem::path& folder, bool quiet) {
-  const std::vector<std::string> written = tables_in(folder);
+void set_former_aside(const std::vector<std::string>& former, const std::set<std::string>& written,
+                      const std::filesystem::path& folder, bool quiet) {
   const std::filesystem::path aside = folder / "former";
   std::vector<std::string> moved, left;
   for (const std::string& file : former) {
     std::error_code fault;
-    if (std::find(written.begin(), written.end(), file) != written.end()) continue;
+    if (written.contains(file)) continue;
     if (!std::filesystem::exists(folder / file, fault)) continue;
     std::filesystem::create_directory(aside, fault);
     if (!fault) std::filesystem::rename(folder / file, aside / file, fault);
@@ -264,6 +266,8 @@ int run(const RunOptions& options) {
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
   std::vector<std::string> former;
+  std::set<std::string> written;
+  bool stays_former = false;
   std::optional<io::FolderLock> lock;
   (void)stop_on_interrupt();  // from here on a file that may not grow is an error of its write
   try {
@@ -279,9 +283,10 @@ int run(const RunOptions& options) {
                                                   study.description.text, options.command, io::utc_now()});
     for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);
     const Journals journals = open_journals(study, options, folder);
-    tell_of_damage(journals);
+    tell_of_damage(journals, options.quiet);
     if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
-    io::CsvSink csv(folder);
+    // Tables replace former ones when results.nc does, so that all are of one run.
+    io::CsvSink csv(folder, [&] { return netcdf.is_published(); });
     io::TeeSink sink({&netcdf, &csv});
     FolderWatch watch([&] {
       const std::string loss = lock->loss();
@@ -293,6 +298,9 @@ int run(const RunOptions& options) {
                                     folder.string(), loss));
     status = conclude(study, reports, netcdf);
     netcdf.close();
+    csv.close();
+    written = csv.written();
+    stays_former = !netcdf.is_published();
     for (const auto& journal : journals)
       if (journal && status == exit_done) journal->remove();
   } catch (const OutputError& fault) {
@@ -302,7 +310,11 @@ int run(const RunOptions& options) {
     std::fflush(nullptr);
     std::_Exit(exit_failed);
   }
-  set_former_aside(former, folder, options.quiet);
+  if (stays_former) {
+    tell(fmt::format("{}: nothing was written; the former results stay", folder.string()));
+    return status;
+  }
+  set_former_aside(former, written, folder, options.quiet);
   if (options.vtk && !write_motion(folder) && status == exit_done) status = exit_failed;
   try {
     report::write_report(folder / "results.nc", folder / "report.html");

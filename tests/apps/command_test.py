@@ -440,15 +440,17 @@ duration = 1.0
         def contents():
             return {path.name: path.read_bytes() for path in (self.folder / "out").iterdir() if path.is_file()}
 
-        def limit():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
-
         before = contents()
         self.assertIn("results.nc", before)
-        result = self.run_command("run", study, "-o", "out", "--only", "response", preexec_fn=limit)
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("File too large", result.stderr)
-        self.assertEqual(before, contents())
+        for size in (200, 200_000):  # not even a head; a head, and no rows
+            def limit():
+                resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+            result = self.run_command("run", study, "-o", "out", preexec_fn=limit)
+            self.assertEqual(result.returncode, 3, result.stderr)
+            self.assertIn("File too large", result.stderr)
+            self.assertEqual(before, contents(), size)
+        self.assertIn("out: nothing was written; the former results stay\n", result.stderr)
 
     def test_failed_mathematics_exits_with_3_and_keeps_the_rows(self):
         study = self.write(LONG.replace("DURATION", "5.0").replace("amplitude = 1.0\nangular_frequency = 2.0",

@@ -105,9 +105,10 @@ class Stopping(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rubato-stopping-"))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
-    def start(self, text, *options):
+    def start(self, text, *options, keeps=False):
         (self.folder / "study.toml").write_text(text)
-        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        if not keeps:
+            shutil.rmtree(self.folder / "out", ignore_errors=True)
         process = subprocess.Popen([RUBATO, "run", "study.toml", "-o", "out", *options], cwd=self.folder,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
@@ -185,6 +186,19 @@ between = ["m{i}", "{f'm{i - 1}' if i else 'ground'}"]
 stiffness = {100 + i % 7}
 """ for i in range(1500))
         self.stops(masses + '[[analysis]]\nname = "slow"\ntype = "modes"\ncount = 1500\nobserve = ["m0"]\n', signal.SIGTERM)
+
+    def test_former_results_stay_where_nothing_was_reached(self):
+        (self.folder / "study.toml").write_text(STUDIES["exact"].replace("1e4", "1e-4"))
+        subprocess.run([RUBATO, "run", "study.toml", "-o", "out", "-q"], cwd=self.folder, check=True, timeout=60)
+        before = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir()}
+        process = self.start(STUDIES["periodic"], keeps=True)
+        time.sleep(1.0)
+        process.send_signal(signal.SIGTERM)
+        out, err = process.communicate(timeout=30)
+        self.assertEqual((process.returncode, out), (130, ""), err)
+        self.assertIn("out: nothing was written; the former results stay\n", err)
+        after = {path.name: path.read_bytes() for path in (self.folder / "out").iterdir() if path.suffix != ".resume"}
+        self.assertEqual(before, after)
 
     def test_a_second_signal_ends_the_process_at_once(self):
         process = self.start(STUDIES["periodic"])

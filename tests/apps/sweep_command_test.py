@@ -161,14 +161,15 @@ class Sweep(unittest.TestCase):
                               (sound[:third.start] + sound[third] + sound[third.start:], "; the "),
                               (sound[:third.start] + sound[third.stop:], "; the "), (bytes(flipped), "; the ")):
             (self.folder / "out/frf.resume").write_bytes(damaged)
-            result = self.run_command("run", "study.toml", "-o", "out", "--resume", "-q")
+            result = self.run_command("run", "study.toml", "-o", "out", "--resume")
             self.assertIn(told, result.stderr)
             if result.returncode == 2:
                 self.assertRegex(result.stderr, "^error: --resume: out/frf.resume .*; run without --resume to begin afresh\n$")
                 continue
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertRegex(result.stderr, r"^warning: --resume: out/frf.resume: piece \d+ is (damaged|cut short); the \d+ "
-                                            r"before it are kept, and the rest \(\d+ bytes\) is computed again\n$")
+            self.assertRegex(result.stderr, r"(?m)^(warning: --resume: out/frf.resume: piece \d+ is damaged|"
+                                            r"--resume: out/frf.resume: piece \d+ is cut short); the \d+ "
+                                            r"before it are kept, and the rest \(\d+ bytes\) is computed again$")
             self.assertEqual(self.bytes_of("out"), whole)
 
     def test_refuses_to_resume_with_another_mesh(self):

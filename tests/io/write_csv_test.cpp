@@ -141,6 +141,22 @@ TEST_F(WriteCsv, AFormerTableStaysUntilRowsOfTheNewOneAreWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "response.csv.partial"));
 }
 
+TEST_F(WriteCsv, TablesWaitForWhoeverSaysThatTheyMayReplaceFormerOnes) {
+  const double row[] = {0.5, 1, 2, 10, 20, -3};
+  for (const bool may_at_last : {false, true}) {
+    std::ofstream(folder_ / "response.csv") << "former";
+    bool may = false;
+    CsvSink sink(folder_, [&] { return may; });
+    sink.open(testing::transient_layout())->append(row);
+    EXPECT_EQ(text("response.csv"), "former");
+    may = may_at_last;
+    sink.close();
+    EXPECT_EQ(sink.written().contains("response.csv"), may_at_last);
+    EXPECT_EQ(text("response.csv") == "former", !may_at_last);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "response.csv.partial"));
+}
+
 TEST_F(WriteCsv, AFullDiskIsCalledFull) {
   std::filesystem::create_symlink("/dev/full", folder_ / "response.csv");
   CsvSink sink(folder_);

@@ -157,6 +157,7 @@ void JournalFile::find_pieces(const std::string& head) {
     ++finished_;
   }
   const std::uintmax_t size = size_of(file_);
+  is_cut_short_ = record.kind == Record::Kind::cut_short;
   if (record.kind != Record::Kind::end)
     damage_ = fmt::format("{}: piece {} {}; the {} before it are kept, and the rest ({} bytes) is computed again",
                           path_.string(), finished_ + 1,

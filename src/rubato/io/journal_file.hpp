@@ -43,6 +43,8 @@ class JournalFile final : public results::Journal {
   void remove();
   /// What is wrong with the journal that was found, and how many pieces are kept of it; empty where nothing is.
   const std::string& damage() const { return damage_; }
+  /// Whether that is no more than a last piece without its end, as a killed run leaves it.
+  bool is_cut_short() const { return is_cut_short_; }
 
  private:
   struct Record;
@@ -53,6 +55,7 @@ class JournalFile final : public results::Journal {
 
   std::filesystem::path path_;
   std::string fingerprint_, damage_;
+  bool is_cut_short_ = false;
   int file_ = -1;
   long finished_ = 0, next_read_ = 0;
   std::uintmax_t end_ = 0, read_at_ = 0;  ///< behind the last piece; the next to be read [bytes]

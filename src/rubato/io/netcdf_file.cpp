@@ -27,6 +27,7 @@ NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(partial_name(path)), 
     check(status);
   }
   is_open_ = true;
+  is_published_ = path_ == name_;
   known_ = KnownFile(path_);
 }
 
@@ -34,7 +35,7 @@ NetcdfFile::~NetcdfFile() {
   if (is_open_) nc_close(id_);
   if (path_ == name_) return;
   try {
-    if (has_data_ && !has_failed_) publish();
+    if (has_worth_ && !has_failed_) publish();
   } catch (const OutputError&) {
     // A destructor cannot say so; whoever needs to know has closed it.
   }
@@ -71,7 +72,6 @@ void NetcdfFile::make_room(double bytes) {
   if (!has_disk_space(path_, pending_ + bytes)) throw OutputError(write_failure(name_, ENOSPC));
   if (!may_grow(path_, pending_ + bytes + closing_bytes)) throw OutputError(write_failure(name_, EFBIG));
   pending_ += bytes;
-  has_data_ = true;
 }
 
 void NetcdfFile::sync() {
@@ -81,9 +81,10 @@ void NetcdfFile::sync() {
 }
 
 void NetcdfFile::publish() {
-  if (path_ == name_) return;
+  if (path_ == name_ || (!has_worth_ && std::filesystem::exists(name_))) return;
   if (std::rename(path_.c_str(), name_.c_str()) != 0) throw OutputError(write_failure(name_, errno));
   path_ = name_;
+  is_published_ = true;
   known_ = KnownFile(path_);
 }
 

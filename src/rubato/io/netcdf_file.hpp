@@ -2,6 +2,7 @@
 
 #include <rubato/io/known_file.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <mutex>
@@ -9,9 +10,9 @@
 
 namespace rubato::io {
 
-/// A netCDF-4 file open for writing. It is made under the name `FILE.partial` and takes its own with the first data
-/// that have reached the disk: until then a former file of this name stays as it is. (A name that leads to another
-/// place, as a link does, is written at once.)
+/// A netCDF-4 file open for writing. It is made under the name `FILE.partial`, and replaces a former file of its own
+/// name only once it is worth it: with rows that have reached the disk, or what is as good. (A name that leads to
+/// another place, as a link does, is written at once.)
 ///
 /// HDF5 survives no failed write: what it holds in memory cannot be brought to the file any more, which then cannot be
 /// read at all. So data that would not fit is refused before HDF5 sees it, and the file stays whole. Should a write
@@ -38,8 +39,12 @@ class NetcdfFile {
   void make_room(double bytes);
   /// Makes everything written so far readable on disk.
   void sync();
-  /// Takes its name, after a sync.
+  /// It holds what a former file may be given up for.
+  void note_worth() { has_worth_ = true; }
+  /// Takes its name, after a sync, unless there is a former file and nothing worth it.
   void publish();
+  /// May be asked by any thread.
+  bool is_published() const { return is_published_; }
   /// Whether its name still leads to it.
   bool is_there();
   void close();
@@ -50,7 +55,8 @@ class NetcdfFile {
   std::mutex mutex_;
   int id_ = 0;
   double pending_ = 0.0;  ///< bytes announced since the last sync: they may not be in the file yet
-  bool is_open_ = false, has_failed_ = false, has_data_ = false;
+  std::atomic<bool> is_published_{false};
+  bool is_open_ = false, has_failed_ = false, has_worth_ = false;
 };
 
 }  // namespace rubato::io

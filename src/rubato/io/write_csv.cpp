@@ -10,7 +10,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rubato::io {
@@ -29,10 +31,30 @@ std::string title(const results::Block& block, std::size_t label) {
   return field(text);
 }
 
-class CsvWriter final : public results::RowWriter {
+}  // namespace
+
+/// Which tables have taken their names, and which wait for it. Used by several threads.
+struct CsvSink::Register {
+  struct Waiting {
+    std::filesystem::path path, name;
+  };
+  std::function<bool()> may_replace;
+  std::mutex mutex;
+  std::set<std::string> written;
+  std::vector<Waiting> waiting;
+
+  void take_name(const Waiting& table) {
+    if (table.path != table.name && std::rename(table.path.c_str(), table.name.c_str()) != 0)
+      throw OutputError(write_failure(table.name, errno));
+    const std::lock_guard lock(mutex);
+    written.insert(table.name.filename().string());
+  }
+};
+
+class CsvSink::Writer final : public results::RowWriter {
  public:
-  CsvWriter(std::filesystem::path path, const results::TableLayout& layout)
-      : path_(partial_name(path)), name_(std::move(path)) {
+  Writer(std::filesystem::path path, const results::TableLayout& layout, std::shared_ptr<Register> notes)
+      : path_(partial_name(path)), name_(std::move(path)), register_(std::move(notes)) {
     order_columns(layout);
     errno = 0;
     file_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -41,7 +63,7 @@ class CsvWriter final : public results::RowWriter {
     buffer_ = header_ + "\n";
     header_.clear();
   }
-  ~CsvWriter() override {
+  ~Writer() override {
     try {
       write();
     } catch (const OutputError&) {
@@ -50,7 +72,12 @@ class CsvWriter final : public results::RowWriter {
     ::close(file_);
     if (path_ == name_) return;
     std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+    if (size_ == 0) {
+      std::filesystem::remove(path_, ignored);
+      return;
+    }
+    const std::lock_guard lock(register_->mutex);
+    register_->waiting.push_back({path_, name_});
   }
 
   void append(std::span<const double> row) override {
@@ -116,26 +143,27 @@ class CsvWriter final : public results::RowWriter {
         const std::size_t row_end = buffer_.rfind('\n', written == 0 ? 0 : written - 1);
         const std::size_t whole = written == 0 || row_end == std::string::npos ? 0 : row_end + 1;
         (void)!::ftruncate(file_, static_cast<off_t>(size_ + whole));  // a device has no length; nothing is lost then
-        if (path_ != name_ && whole > 0 && !std::filesystem::exists(name_)) publish();
+        size_ += whole;
+        if (whole > 0 && register_->may_replace()) publish();
         throw OutputError(write_failure(name_, reason));
       }
       written += static_cast<std::size_t>(count);
     }
-    if (path_ != name_) publish();
+    if (register_->may_replace()) publish();
     failed_ = false;
     size_ += buffer_.size();
     buffer_.clear();
   }
 
-  // A former table stays until the first rows of this one have been written.
   void publish() {
-    if (std::rename(path_.c_str(), name_.c_str()) != 0) throw OutputError(write_failure(name_, errno));
+    register_->take_name({path_, name_});
     path_ = name_;
   }
 
   static constexpr std::size_t buffer_size = 1u << 16;
 
   std::filesystem::path path_, name_;  // where it is; where it goes
+  std::shared_ptr<Register> register_;
   std::vector<results::Block> blocks_;
   std::vector<Column> columns_;
   std::string header_, buffer_;
@@ -145,11 +173,29 @@ class CsvWriter final : public results::RowWriter {
   FlushTimer timer_;
 };
 
-}  // namespace
+CsvSink::CsvSink(std::filesystem::path folder, std::function<bool()> may_replace)
+    : folder_(std::move(folder)), register_(std::make_shared<Register>()) {
+  register_->may_replace = may_replace ? std::move(may_replace) : [] { return true; };
+}
+
+CsvSink::~CsvSink() {
+  std::error_code ignored;
+  for (const auto& table : register_->waiting) std::filesystem::remove(table.path, ignored);
+}
+
+void CsvSink::close() {
+  if (register_->may_replace())
+    for (const auto& table : std::exchange(register_->waiting, {})) register_->take_name(table);
+}
+
+std::set<std::string> CsvSink::written() const {
+  const std::lock_guard lock(register_->mutex);
+  return register_->written;
+}
 
 std::unique_ptr<results::RowWriter> CsvSink::open(const results::TableLayout& layout) {
   const std::string name = layout.analysis + (layout.table.empty() ? "" : "." + layout.table) + ".csv";
-  return std::make_unique<CsvWriter>(folder_ / name, layout);
+  return std::make_unique<Writer>(folder_ / name, layout, register_);
 }
 
 }  // namespace rubato::io

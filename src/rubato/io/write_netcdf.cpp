@@ -42,7 +42,8 @@ class NetcdfWriter final : public results::RowWriter {
   void append(std::span<const double> row) override {
     buffer_.insert(buffer_.end(), row.begin(), row.end());
     ++buffered_;
-    if (timer_.is_due())
+    // The first rows go to the disk at once: former results make room for these then.
+    if (timer_.is_due() || (buffered_ == capacity_ && !file_->is_published()))
       flush();
     else if (buffered_ == capacity_)
       write();
@@ -155,6 +156,7 @@ class NetcdfWriter final : public results::RowWriter {
       file_->check(nc_put_vara_double(group_, variable.id, start, count, column_.data()));
     }
     is_refused_ = false;
+    file_->note_worth();
     rows_ += buffered_;
     buffered_ = 0;
     buffer_.clear();
@@ -206,8 +208,11 @@ void NetcdfSink::conclude(const std::string& analysis, const std::string& status
   if (!message.empty()) file_->attribute(group, NC_GLOBAL, "message", message);
   for (const auto& [name, text] : attributes) file_->attribute(group, NC_GLOBAL, name, text);
   file_->sync();
+  if (status == "done") file_->note_worth();
   file_->publish();
 }
+
+bool NetcdfSink::is_published() const { return file_->is_published(); }
 
 bool NetcdfSink::is_there() const { return file_->is_there(); }
 

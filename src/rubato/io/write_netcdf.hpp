@@ -20,7 +20,8 @@ class NetcdfFile;
 /// Throws OutputError. Rows that would not fit on the disk, or into the size that a file may have, are refused before
 /// they are written, so that the file stays readable and can be concluded and closed.
 ///
-/// A former file of the same name is replaced when the first rows, or the first conclusion, have been written.
+/// A former file of the same name is replaced when the first rows have been written, or an analysis is done: a run that
+/// cannot write, or is stopped before it has anything to write, leaves it.
 class NetcdfSink final : public results::Sink {
  public:
   NetcdfSink(const std::filesystem::path& path, const Provenance& provenance);
@@ -33,6 +34,8 @@ class NetcdfSink final : public results::Sink {
                 const std::vector<std::pair<std::string, std::string>>& attributes) override;
   /// Closes the file; throws OutputError where what is buffered cannot be written.
   void close();
+  /// Whether it has taken the place of a former file, or there was none.
+  bool is_published() const;
   /// Whether the file's name still leads to it: not where somebody has removed it.
   bool is_there() const;
   /// Whether a write has failed in spite of that: the file may be unreadable, and HDF5 crashes as the process ends
