@@ -180,6 +180,10 @@ TEST(DistributedForceFile, IsReadAndPointsAtItsFaults) {
   EXPECT_EQ(with("1e3 * t", "1e3 / t"),
             "study.toml:46:14: error: the distributed force on \"column\": \"1e3 / t\" is inf at t = 0; give a formula "
             "that is finite at all times");
+  EXPECT_EQ(
+      with("1e3 * t", "1e3 / 0"),
+      "study.toml:46:14: error: the distributed force on \"column\": expression is inf (from \"1e3 / 0\"); give a "
+      "finite number");
 }
 
 TEST(NodeFault, RefusesTheNameOfTheGround) {

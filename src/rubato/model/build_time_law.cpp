@@ -24,7 +24,7 @@ struct Building {
   TimeLaw operator()(const TimeFormulaDescription& formula) const {
     const std::string& text = formula.formula.expression;
     if (is_constant(formula, parameters))
-      return HarmonicLaw{evaluate(Quantity(text), parameters, part + ": expression"), 0.0, 0.0};
+      return HarmonicLaw{evaluate(formula.formula, parameters, part + ": expression"), 0.0, 0.0};
     try {
       FormulaLaw law{numerics::Expression(text, parameters, true)};
       const double start = law.formula(0.0);
