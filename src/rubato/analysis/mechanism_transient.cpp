@@ -117,20 +117,31 @@ std::vector<integrate::LockEvent> locks_at_start(const system::State& start) {
   return events;
 }
 
+/// A time to one digit more than is known of it. What happens soon has three digits at least.
+std::string told_time(double t, double known) {
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(known))), 0, 12);
+  if (std::abs(t) < 100.0 * std::pow(10.0, -decimals)) return fmt::format("{:.3g}", t);
+  std::string text = fmt::format("{:.{}f}", t, decimals);
+  if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 /// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
-void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism,
+/// @param known  of their times [s]
+void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism, double known,
                    std::vector<std::string>& findings) {
   constexpr long most_told = 6;
   std::vector<long> changes(mechanism.model().frictions.size(), 0);
   for (const auto& event : events) {
     if (event.friction < 0) {
-      findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s{}",
-                                     mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
-                                     event.has_engaged ? "locks" : "lets go", event.t, energy_told(event)));
+      findings.push_back(
+          fmt::format("\"{}\" {} at t = {} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
+                      event.has_engaged ? "locks" : "lets go", told_time(event.t, known), energy_told(event)));
     } else if (++changes[static_cast<std::size_t>(event.friction)] <= most_told) {
-      findings.push_back(fmt::format("\"{}\" {} at t = {:.9g} s",
+      findings.push_back(fmt::format("\"{}\" {} at t = {} s",
                                      mechanism.model().frictions[static_cast<std::size_t>(event.friction)].label(),
-                                     event.has_engaged ? "sticks" : "slips", event.t));
+                                     event.has_engaged ? "sticks" : "slips", told_time(event.t, known)));
     }
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
@@ -176,7 +187,10 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
         "event, the shortest of {:.3g} s: {} steps instead of {:.0f}; take a shorter step, or step = {{ "
         "tolerance = 1e-4 }}",
         report.failed, report.smallest_step, report.march.steps, transient.automatic->expected_steps));
-  report_events(march.timeline().events(), mechanism, run.findings);
+  // The share of the run that the tolerance is; of equal steps, which are judged by nothing, a tenth of a step.
+  const double known = march.has_equal_steps() ? 0.1 * transient.automatic->plan.first
+                                               : transient.automatic->tolerance * transient.duration;
+  report_events(march.timeline().events(), mechanism, known, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
     run.message = march.failure(report);
