@@ -324,6 +324,98 @@ TEST(HarmonicBalance, SaysThatALargeStructureInResonanceIsUnbounded) {
   }
 }
 
+system::LocallyNonlinear rubbing_mass(double contact_stiffness, double limit, double w, double damping) {
+  Matrix m(1, 1), c(1, 1);
+  m << 1.0;
+  c << damping;
+  return structure(m, c, m, {{"contact", 0, ground, contact_stiffness, limit}}, {testing::harmonic(0, 1.0, w)});
+}
+
+// Contacts of a thousand to a million times the spring, which stick and slip, slip alone or hardly move, against the
+// orbit: within the tolerance, and within what the answer says of itself.
+TEST(HarmonicBalance, BalancesStiffContacts) {
+  for (const double stiffness : {1e3, 1e4, 1e5, 1e6})
+    for (const auto& [w, limit] : {std::pair{0.1, 0.1}, {0.5, 0.5}, {0.95, 0.5}, {0.95, 0.8}, {1.5, 0.3}, {0.3, 0.8}}) {
+      SCOPED_TRACE(stiffness);
+      SCOPED_TRACE(w);
+      const auto system = rubbing_mass(stiffness, limit, w, 0.1);
+      HarmonicBalanceSolver solver(system, observing({0}));
+      PeriodicSolver orbit(system, observing({0}));
+      SteadyResponse r, exact;
+      solver.solve(excitation_of(system), SteadyStart::unloaded, r);
+      orbit.solve(excitation_of(system), SteadyStart::unloaded, exact);
+      ASSERT_EQ(exact.status, SteadyStatus::converged);
+      EXPECT_EQ(r.status, SteadyStatus::converged);
+      EXPECT_NEAR(r.amplitude[0], exact.amplitude[0], (r.error + 1e-9) * exact.amplitude[0]);
+      EXPECT_LE(r.error, 1e-3);
+    }
+}
+
+// J. P. Den Hartog, Trans. ASME 53 (1931) APM-107: one mass without damping under Coulomb friction L that never sticks,
+// with b = w/omega_n: X = (f/k) sqrt(V^2 - (L/f)^2 U^2), V = 1/(1 - b^2), U = sin(pi/b)/(b (1 + cos(pi/b))).
+TEST(HarmonicBalance, TakesRigidCoulombFriction) {
+  for (const double stiffness : {1e6, 1e9, 1e15})
+    for (const double w : {0.8, 1.5}) {
+      const double limit = 0.3, v = 1.0 / (1.0 - w * w), angle = std::numbers::pi / w,
+                   u = std::sin(angle) / (w * (1.0 + std::cos(angle)));
+      const auto system = rubbing_mass(stiffness, limit, w, 0.0);
+      HarmonicBalanceSolver solver(system, observing({0}));
+      SteadyResponse r;
+      solver.solve(excitation_of(system), SteadyStart::unloaded, r);
+      EXPECT_EQ(r.status, SteadyStatus::converged) << stiffness << " " << w;
+      const double exact = std::sqrt(v * v - limit * limit * u * u);
+      EXPECT_NEAR(r.amplitude[0], exact, 1e-3 * exact) << stiffness << " " << w;
+    }
+}
+
+// Where more orders would be needed than there may be, what comes back is the balance of those there are: its equations
+// hold, so do its works, and its error says how far it is off.
+TEST(HarmonicBalance, NeverAnswersWithAStageOfAContinuation) {
+  const auto system = rubbing_mass(1e6, 0.8, 0.3, 0.1);
+  HarmonicBalanceSolver solver(system, observing({0}), {.tolerance = 1e-3, .most_harmonics = 31});
+  SteadyResponse r;
+  solver.solve(excitation_of(system), SteadyStart::previous, r);
+  EXPECT_EQ(r.status, SteadyStatus::not_converged);
+  EXPECT_LT(r.residual, 1e-9);
+  expect_balance(r);
+  EXPECT_NEAR(r.amplitude[0], 0.550929, r.error * 0.550929);  // by the periodic orbit
+  EXPECT_LT(r.error, 0.5);
+}
+
+// A frame of five storeys with a damper in each, 200 times as stiff as its columns: what one point leaves is no start
+// for the next, which has another pattern of stick and slip. Along the line each point is found as by itself.
+TEST(HarmonicBalance, IsNoWorseAlongALineThanPointByPoint) {
+  const Index n = 5;
+  Matrix m = Matrix::Identity(n, n), k = Matrix::Zero(n, n);
+  std::vector<model::Slider> sliders;
+  std::vector<system::LoadTerm> loads;
+  for (Index i = 0; i < n; ++i) {
+    const Index below = i == 0 ? ground : i - 1;
+    k(i, i) += 100.0;
+    if (i > 0) {
+      k(i - 1, i - 1) += 100.0;
+      k(i, i - 1) = k(i - 1, i) = -100.0;
+    }
+    sliders.push_back({"s" + std::to_string(i), i, below, 2e4, 2.4 * (1.05 - 0.15 * static_cast<double>(i))});
+    loads.push_back(testing::harmonic(i, 1.0, 4.0));
+  }
+  const auto system = structure(m, 1e-3 * k, k, sliders, loads);
+  HarmonicBalanceSolver line(system, observing({4, 0}));
+  Excitation excitation = excitation_of(system);
+  for (int i = 0; i < 10; ++i) {
+    excitation.angular_frequency = 4.0 + 0.1 * i;
+    SteadyResponse along, alone;
+    line.solve(excitation, SteadyStart::unloaded, along);
+    HarmonicBalanceSolver point(system, observing({4, 0}));
+    point.solve(excitation, SteadyStart::unloaded, alone);
+    ASSERT_EQ(alone.status, SteadyStatus::converged) << i;
+    ASSERT_EQ(along.status, SteadyStatus::converged) << i;
+    EXPECT_NEAR(along.amplitude[0], alone.amplitude[0], (along.error + alone.error + 1e-9) * alone.amplitude[0]) << i;
+    // What is tried in vain with what the point before left, and no more.
+    EXPECT_LE(along.iterations, alone.iterations + 200) << i;
+  }
+}
+
 // A mass that only a slider ties to the ground has no static stiffness of its own: it rests where the slider leaves it.
 TEST(HarmonicBalance, TakesAStructureThatOnlySlidersHold) {
   Matrix m(1, 1), c(1, 1), k(1, 1);

@@ -4,6 +4,7 @@
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -13,6 +14,16 @@ namespace {
 using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Iterations of Newton after which a point that began with what others left begins again, a point that can be shot for
+// is, and any other is left with its best balance.
+constexpr int most_brief_iterations = 60, most_limited_iterations = 300, most_full_iterations = 3000;
+// Pieces of the exact flow in a period times the cube of the state: a second or so a pass. Stiffer contacts are
+// followed up to this multiple of the fundamental.
+constexpr double most_work = 1e9, followed = 1000.0;
+
+// An answer whose error falls as one over its orders is twice as far off as from that with two thirds of the orders.
+constexpr double caution = 2.0;
 
 // The orders a step adds: enough to pay for solving again.
 int more(int count) { return count + std::max(1, count / 2); }
@@ -29,31 +40,91 @@ HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonli
   forget();
 }
 
-void HarmonicBalanceSolver::Implementation::forget() {
+void HarmonicBalanceSolver::Implementation::forget_points() {
   past.clear();
   equations.front().forget();
-  remembered_offsets = Vector::Zero(stiffness.size());
   count_wanted = 1;
+  firmness = 0.0;
+}
+
+void HarmonicBalanceSolver::Implementation::forget() {
+  forget_points();
+  remembered_offsets = Vector::Zero(stiffness.size());
   // The basis of the loads has grown with those before; what is kept of it would show in the last digits.
   patterns.resize(system.size(), 0);
   loads.clear();
   harmonics.clear();
 }
 
-// A series cannot walk: where no series balances a structure that sliders alone hold, its motion over a period says
-// whether it drifts.
-bool HarmonicBalanceSolver::Implementation::walks(const Excitation& excitation, SteadyStart start,
+// Whether the motion over a period may be sought at a price: that of the exact flow with its derivative, contacts no
+// stiffer than it can follow.
+bool HarmonicBalanceSolver::Implementation::can_be_shot(const Excitation& excitation, SteadyStart start) {
+  const Index n = system.size(), m = stiffness.size();
+  if (n > largest_rigid || m == 0 || start == SteadyStart::previous) return false;
+  if (!fastest) {
+    const auto highest = [&](const SparseMatrix& k) {
+      const Vector squares = numerics::all_modes(k, system.mass()).eigenvalues;
+      return squares.size() > 0 ? std::sqrt(std::max(0.0, squares.maxCoeff())) : infinity;
+    };
+    fastest = {highest(system.stiffness()), highest(system.stuck_stiffness())};
+  }
+  const auto [alone, stuck] = *fastest;
+  const double pieces =
+      pi * std::max(alone, std::min(stuck, followed * excitation.angular_frequency)) / excitation.angular_frequency;
+  const double size = static_cast<double>(2 * n + m);
+  return pieces * size * size * size <= most_work;
+}
+
+// The structure with contacts no stiffer than this [N/m].
+system::LocallyNonlinear HarmonicBalanceSolver::Implementation::with_contacts_up_to(double most) const {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = system.mass();
+  parts.damping = system.damping();
+  parts.stiffness = system.stiffness();
+  parts.sliders = system.sliders();
+  for (model::Slider& slider : parts.sliders) slider.stiffness = std::min(slider.stiffness, most);
+  parts.loads = system.loads();
+  parts.coordinates = system.coordinates();
+  return system::LocallyNonlinear(std::move(parts));
+}
+
+// Where no series balances the structure, the motion over a period itself is sought: it may walk over its sliders,
+// which a series cannot, or its contacts stick and slip so sharply that more orders than there are would be needed.
+bool HarmonicBalanceSolver::Implementation::shoot(const Excitation& excitation, SteadyStart start,
                                                   SteadyResponse& response) {
   if (system.size() > largest_rigid || stiffness.size() == 0) return false;
   if (!may_walk) may_walk = (numerics::all_modes(system.stiffness(), system.mass()).eigenvalues.array() == 0.0).any();
-  if (!*may_walk) return false;
+  const bool may_repeat = can_condense && can_be_shot(excitation, start);
+  if (!*may_walk && !may_repeat) return false;
+  const SteadyStart offsets_from = start == SteadyStart::rest ? SteadyStart::unloaded : start;
   auto solver = std::make_unique<PeriodicSolver>(system, request);
+  std::unique_ptr<system::LocallyNonlinear> softened;
   SteadyResponse motion;
-  solver->solve(excitation, start, motion);
-  if (motion.status != SteadyStatus::drifting) return false;
+  const double reach = followed * excitation.angular_frequency;
+  if (may_repeat && fastest->second > reach) {
+    // Of contacts so stiff that their give hardly matters: what four times as much give changes is three times the
+    // error.
+    const double most = stiffness.maxCoeff() * std::pow(reach / fastest->second, 2);
+    const system::LocallyNonlinear softer_yet = with_contacts_up_to(0.25 * most);
+    softened = std::make_unique<system::LocallyNonlinear>(with_contacts_up_to(most));
+    SteadyResponse other;
+    PeriodicSolver(softer_yet, request).solve(excitation, offsets_from, other);
+    solver = std::make_unique<PeriodicSolver>(*softened, request);
+    solver->solve(excitation, offsets_from, motion);
+    const double size = motion.amplitude.size() > 0 ? motion.amplitude.maxCoeff() : 0.0;
+    const double change = size > 0.0 ? (motion.amplitude - other.amplitude).cwiseAbs().maxCoeff() / size : infinity;
+    motion.error += change;
+    if (other.status != motion.status || !(motion.error <= options.tolerance))
+      motion.status = SteadyStatus::not_converged;
+  } else {
+    solver->solve(excitation, offsets_from, motion);
+  }
+  if (motion.status != SteadyStatus::drifting && !(may_repeat && motion.status == SteadyStatus::converged))
+    return false;
   motion.iterations += response.iterations;
   response = std::move(motion);
-  walking = std::move(solver);
+  shot = std::move(solver);
+  shot_system = std::move(softened);
   return true;
 }
 
@@ -77,61 +148,124 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   response.residual = response.error = 0.0;
   response.drift.resize(0);
   s.last = excitation;
-  s.walking.reset();
+  s.shot.reset();
   s.offsets = start == SteadyStart::previous ? s.remembered_offsets : Vector::Zero(s.stiffness.size());
   s.take_loads(excitation);
 
-  const bool is_symmetric = excitation.is_half_wave_symmetric() && s.offsets.isZero(0.0);
-  const int stride = is_symmetric ? 2 : 1;
-  int order = 1;
-  for (const LoadHarmonic& h : excitation.harmonics) order = std::max(order, h.order);
-  for (const int k : s.request.harmonics)
-    if (k <= s.options.most_harmonics) order = std::max(order, k);
-  const int most = std::max(s.options.most_harmonics - 1, order - 1) / stride + 1;
-  int count = std::max((order - 1 + stride - 1) / stride + 1, std::min(s.count_wanted, most));
-
-  for (bool is_first = true;; is_first = false) {
-    const Orders orders{stride, count};
-    const int probes = s.orders_to_probe(excitation, orders);
-    s.has_answer = s.condense(excitation, stride, count + probes, !is_symmetric);
-    if (!s.has_answer) {
-      if (!s.walks(excitation, start, response)) s.fill_without_answer(excitation, response);
-      return;
-    }
-    if (is_first)
-      s.predict(excitation.angular_frequency, orders, !is_symmetric);
-    else
-      s.series.resize(orders, !is_symmetric, s.stiffness.size());
-    const bool has_converged = s.newton(excitation, !is_first, response);
-    s.recover();
-    response.error = s.truncation_error(probes);
-    if (has_converged && response.error <= s.options.tolerance) {
-      response.status = SteadyStatus::converged;
-      // A point that needed few orders lets the next one try fewer.
-      s.count_wanted = response.error < 0.02 * s.options.tolerance ? std::max(1, 2 * count / 3) : count;
-      break;
-    }
-    if (count >= most || !has_converged) break;
-    count = std::min(most, more(count));
+  // What a hard point left is not believed for long: what fails with it, or becomes dear, is begun again from nothing.
+  using Effort = Implementation::Effort;
+  const bool inherits = s.has_solved_points();
+  const Effort full = s.can_be_shot(excitation, start) ? Effort::limited : Effort::full;
+  bool has_converged = s.attempt(excitation, inherits ? Effort::brief : full, response);
+  if (!has_converged && s.can_condense && inherits) {
+    s.forget_points();
+    has_converged = s.attempt(excitation, full, response);
   }
-  if (response.status != SteadyStatus::converged && s.walks(excitation, start, response)) {
-    s.past.clear();
+  if (!has_converged) s.forget_points();
+  if (!has_converged && s.shoot(excitation, start, response)) return;
+  if (!s.has_answer) {
+    s.fill_without_answer(excitation, response);
     return;
   }
   s.fill(excitation, response);
-  if (response.status == SteadyStatus::converged) {
-    if (s.past.size() < 3) s.past.emplace_back();
-    std::rotate(s.past.begin(), s.past.end() - 1, s.past.end());
-    s.past.front().angular_frequency = excitation.angular_frequency;
-    s.past.front().series = s.series;
-  } else {
-    s.past.clear();
+  if (!has_converged) return;
+  response.status = SteadyStatus::converged;
+  if (s.past.size() < 3) s.past.emplace_back();
+  std::rotate(s.past.begin(), s.past.end() - 1, s.past.end());
+  s.past.front().angular_frequency = excitation.angular_frequency;
+  s.equations.front().displacement_and_force(s.series, s.past.front().motion.displacement, s.past.front().motion.force);
+}
+
+// Balances more and more orders. What it leaves is the balance of the most orders that Newton's method solved, with its
+// error; has_answer is false where there is none.
+bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation, Effort effort,
+                                                    SteadyResponse& response) {
+  auto& eq = equations.front();
+  const Index m = stiffness.size();
+  const bool is_symmetric = excitation.is_half_wave_symmetric() && offsets.isZero(0.0);
+  const int stride = is_symmetric ? 2 : 1;
+  int order = 1;
+  for (const LoadHarmonic& h : excitation.harmonics) order = std::max(order, h.order);
+  for (const int k : request.harmonics)
+    if (k <= options.most_harmonics) order = std::max(order, k);
+  const int most = std::max(options.most_harmonics - 1, order - 1) / stride + 1;
+  int count = std::max((order - 1 + stride - 1) / stride + 1, std::min(count_wanted, most));
+  const int first_iteration = response.iterations;
+  const int most_iterations = effort == Effort::brief     ? most_brief_iterations
+                              : effort == Effort::limited ? most_limited_iterations
+                                                          : most_full_iterations;
+
+  bool has_solution = false;
+  Motion solution;
+  ComplexMatrix observed_before;
+  double difference = infinity;
+  Vector compliance;
+  has_answer = false;
+  for (;;) {
+    const Orders orders{stride, count};
+    const int probes = orders_to_probe(excitation, orders);
+    can_condense = condense(excitation, stride, count + probes, !is_symmetric);
+    if (!can_condense) return false;
+    bool has_start = has_solution;
+    if (has_solution) {
+      guess = solution;
+      guess.resize(orders, !is_symmetric, m);
+    } else {
+      has_start = predict(excitation.angular_frequency, orders, !is_symmetric);
+    }
+    series.resize(orders, !is_symmetric, m);
+    if (!newton(excitation, has_start, has_solution, effort, response)) {
+      if (has_solution) response.residual = return_to(solution, compliance, excitation);
+      return false;
+    }
+    recover();
+    response.error = truncation_error(probes);
+    // The linear estimate knows nothing of what stiff contacts do as orders are added: two balances tell.
+    if (!std::isinf(firmness_used)) {
+      difference = has_solution ? change_since(observed_before) : infinity;
+      response.error = std::max(response.error, caution * difference);
+      observed_before = observed;
+    }
+    has_solution = has_answer = true;
+    if (response.error <= options.tolerance) {
+      // A point that needed few orders lets the next one try fewer.
+      firmness = firmness_used;
+      count_wanted = response.error < 0.02 * options.tolerance ? std::max(1, 2 * count / 3) : count;
+      return true;
+    }
+    if (count >= most || response.iterations - first_iteration > most_iterations) return false;
+    eq.displacement_and_force(series, solution.displacement, solution.force);
+    compliance = eq.added_compliance();
+    count = std::min(most, more(count));
   }
+}
+
+// What is observed, against the balance of fewer orders: the sum of the moduli of all changes over that of all orders.
+double HarmonicBalanceSolver::Implementation::change_since(const ComplexMatrix& before) const {
+  double largest = 0.0, change = 0.0;
+  for (Index i = 0; i < observed.rows(); ++i) {
+    largest = std::max(largest, observed.row(i).cwiseAbs().sum());
+    change = std::max(change, (observed.row(i).head(before.cols()) - before.row(i)).cwiseAbs().sum() +
+                                  observed.row(i).tail(observed.cols() - before.cols()).cwiseAbs().sum());
+  }
+  return largest > 0.0 ? change / largest : 0.0;
+}
+
+// Leaves the balance of fewer orders, solved before.
+double HarmonicBalanceSolver::Implementation::return_to(const Motion& motion, const Vector& compliance,
+                                                        const Excitation& excitation) {
+  auto& eq = equations.front();
+  eq.join(harmonics, compliance);
+  eq.set(excitation.limits, offsets);
+  series = eq.balanced(motion.displacement, motion.force);
+  const double left = eq.solve(series, options.residual_tolerance, 2).residual;
+  recover();
+  return left;
 }
 
 Waveform HarmonicBalanceSolver::waveform(int points) const {
   Implementation& s = *implementation_;
-  if (s.walking) return s.walking->waveform(points);
+  if (s.shot) return s.shot->waveform(points);
   const Index n = s.system.size(), m = s.stiffness.size();
   const double w = s.last.angular_frequency;
   Waveform wave;

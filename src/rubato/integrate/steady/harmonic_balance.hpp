@@ -27,11 +27,16 @@ struct HarmonicBalanceOptions {
 /// Orders are added until the estimated error is below the tolerance. The estimate is what the first orders left out
 /// would do: their own part in the observed coordinates and, through the Jacobian, the change of the orders kept.
 ///
-/// A series cannot walk: where a structure that sliders alone hold has no balance, the motion over a period says
-/// whether it drifts, and is the answer then (PeriodicSolver; up to 300 coordinates).
+/// Contacts that are stiff beside the structure, rigid ones too, are balanced in u + c fc with a compliance c that
+/// bears on the truncation alone (HarmonicBalanceEquations).
 ///
-/// Newton starts from an extrapolation of the points before. Where it fails, the friction limits are lowered step by
-/// step from a value at which no slider slips, whose answer is linear.
+/// Where no series balances a structure of up to 300 coordinates within the tolerance, the motion over a period is
+/// sought itself (PeriodicSolver): it may walk over sliders that alone hold it, which a series cannot, or stick and
+/// slip too sharply.
+///
+/// Newton starts from an extrapolation of the points before, and begins again from nothing where that fails or becomes
+/// dear. Where it fails then, the friction limits are lowered step by step from a value at which no slider slips, whose
+/// answer is linear.
 class HarmonicBalanceSolver final : public SteadySolver {
  public:
   /// Throws InvalidInput for options that are not positive.

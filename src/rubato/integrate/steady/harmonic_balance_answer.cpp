@@ -30,13 +30,7 @@ void HarmonicBalanceSolver::Implementation::recover() {
   observed_mean = Vector::Zero(o);
   const auto take = [&](Index place) {
     const CondensedHarmonic& harmonic = harmonics[static_cast<std::size_t>(place)];
-    for (const Index j : eq.active()) {
-      const HysteresisLoop& loop = eq.loops()[static_cast<std::size_t>(j)];
-      const Complex u = place == 0 ? Complex(series.mean[j]) : series.coefficients(place - 1, j);
-      const Complex force =
-          place == 0 ? Complex(loop.mean_force()) : loop.force(series.orders.at(static_cast<int>(place) - 1));
-      column_forces(j, place) = -(force - harmonic.held * structure.holding_stiffness()[j] * u);
-    }
+    for (const Index j : eq.active()) column_forces(j, place) = -eq.net_force(place, j);
     column_forces.col(place).tail(e) = harmonic.load;
     moved.noalias() = harmonic.receptance * column_forces.col(place);
     return moved.bottomRows(o);
@@ -144,10 +138,12 @@ void HarmonicBalanceSolver::Implementation::fill(const Excitation& excitation, S
     const HysteresisLoop& loop = eq.loops()[static_cast<std::size_t>(j)];
     response.dissipated[j] = loop.dissipated();
     response.slip_share[j] = loop.slip_share();
-    response.offset[j] = loop.offset();
+    // The loop is that of a softer slider at W: fc = k W + offset k/kT, with 1/k = 1/kT + c.
+    const double offset = loop.offset() * (1.0 + eq.added_compliance()[j] * stiffness[j]);
+    response.offset[j] = offset;
     response.transitions += loop.transitions();
     // A slider that slips forgets, but for the middle of its slip, where it would come to stick.
-    remembered_offsets[j] = loop.slips() ? -stiffness[j] * (series.mean[j] + loop.middle()) : loop.offset();
+    remembered_offsets[j] = loop.slips() ? -stiffness[j] * (series.mean[j] + loop.middle()) : offset;
   }
 }
 

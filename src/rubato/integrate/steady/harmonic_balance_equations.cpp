@@ -10,6 +10,7 @@ namespace {
 // Unknowns from which products beat factorisations: of 760 unknowns one takes 35 ms, a preconditioned product 0.6 ms.
 constexpr Index large_size = 100;
 constexpr int most_products = 25;
+constexpr double farthest_mean = 1e3;      // over the other displacements
 constexpr double newton_tolerance = 1e-6;  // of a step: the next one is as small beside it
 
 }  // namespace
@@ -28,16 +29,50 @@ void SliderSeries::resize(const Orders& new_orders, bool with_mean, Index slider
   has_mean = with_mean;
 }
 
-void HarmonicBalanceEquations::set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits,
-                                   const Vector& offsets) {
+void HarmonicBalanceEquations::join(const std::vector<CondensedHarmonic>& harmonics, const Vector& added) {
   harmonics_ = &harmonics;
+  added_ = added;
+  const Index m = stiffness_.size();
+  effective_.resize(m);
+  for (Index j = 0; j < m; ++j) effective_[j] = stiffness_[j] / (1.0 + added[j] * stiffness_[j]);
+  joined_.resize(harmonics.size());
+  for (std::size_t place = 0; place < harmonics.size(); ++place) {
+    if (harmonics[place].receptance.rows() < m) continue;  // order zero, where there is no mean
+    joined_[place] = harmonics[place].receptance.topLeftCorner(m, m);
+    for (Index j = 0; j < m; ++j) joined_[place](j, j) -= added[j] / part(place, j);
+  }
+}
+
+void HarmonicBalanceEquations::set(const Vector& limits, const Vector& offsets) {
   limits_ = limits;
   offsets_ = offsets;
   active_.clear();
   // A slider without a limit has no force, but where its spring is held in Z its displacement must be known.
-  const bool is_held = std::any_of(harmonics.begin(), harmonics.end(), [](const auto& h) { return h.held > 0.0; });
+  const bool is_held = std::any_of(harmonics_->begin(), harmonics_->end(), [](const auto& h) { return h.held > 0.0; });
   for (Index j = 0; j < limits.size(); ++j)
     if (limits[j] > 0.0 || is_held) active_.push_back(j);
+}
+
+SliderSeries HarmonicBalanceEquations::balanced(const SliderSeries& displacement, const SliderSeries& force) const {
+  SliderSeries series = displacement;
+  series.mean += added_.cwiseProduct(force.mean);
+  series.coefficients += force.coefficients * added_.asDiagonal();
+  return series;
+}
+
+void HarmonicBalanceEquations::displacement_and_force(const SliderSeries& balanced, SliderSeries& displacement,
+                                                      SliderSeries& force) const {
+  force = balanced;
+  force.mean.setZero();
+  force.coefficients.setZero();
+  for (const Index j : active_) {
+    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    if (balanced.has_mean) force.mean[j] = loop.mean_force();
+    for (int i = 0; i < balanced.orders.count; ++i) force.coefficients(i, j) = loop.force(balanced.orders.at(i));
+  }
+  displacement = balanced;
+  displacement.mean -= added_.cwiseProduct(force.mean);
+  displacement.coefficients -= force.coefficients * added_.asDiagonal();
 }
 
 bool HarmonicBalanceEquations::any_slips() const {
@@ -52,39 +87,43 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   force_.resize(count, stiffness_.size());
   mean_force_.resize(stiffness_.size());
   displacement_ = linear_ = 0.0;
+  double mean = 0.0;
   for (const Index j : active_) {
     HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     const Complex* const u = series.coefficients.data() + j * count;
-    loop.pass(stiffness_[j], limits_[j], series.mean[j], series.orders, u, offsets_[j]);
+    const double share = effective_[j] / stiffness_[j];  // of kT in what acts on W
+    loop.pass(effective_[j], limits_[j], series.mean[j], series.orders, u, share * offsets_[j]);
     for (int i = 0; i < count; ++i) {
-      const double held = harmonics[static_cast<std::size_t>(i) + 1].held * holding_[j];
-      force_(i, j) = loop.force(series.orders.at(i)) - held * u[i];
+      const auto place = static_cast<std::size_t>(i) + 1;
+      force_(i, j) = part(place, j) * loop.force(series.orders.at(i)) - held(place, j) * u[i];
       displacement_ = std::max(displacement_, std::abs(u[i].real()) + std::abs(u[i].imag()));
     }
     if (series.has_mean) {
-      mean_force_[j] = loop.mean_force() - harmonics[0].held * holding_[j] * series.mean[j];
-      displacement_ = std::max(displacement_, std::abs(series.mean[j]));
+      mean_force_[j] = part(0, j) * loop.mean_force() - held(0, j) * series.mean[j];
+      mean = std::max(mean, std::abs(series.mean[j]));
     }
   }
   residual_.resize(rows * static_cast<Index>(active_.size()));
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const Index row = active_[a], base = static_cast<Index>(a) * rows;
     if (series.has_mean) {
-      double sum = series.mean[row] - harmonics[0].linear[row].real();
+      double sum = series.mean[row] / part(0, row) - harmonics[0].linear[row].real();
       linear_ = std::max(linear_, std::abs(harmonics[0].linear[row].real()));
-      for (const Index j : active_) sum += harmonics[0].receptance(row, j).real() * mean_force_[j];
+      for (const Index j : active_) sum += joined_[0](row, j).real() * mean_force_[j];
       residual_[base] = sum;
     }
     for (int i = 0; i < count; ++i) {
-      const CondensedHarmonic& harmonic = harmonics[static_cast<std::size_t>(i) + 1];
-      const Complex linear = harmonic.linear[row];
+      const auto place = static_cast<std::size_t>(i) + 1;
+      const Complex linear = harmonics[place].linear[row];
       linear_ = std::max(linear_, std::abs(linear.real()) + std::abs(linear.imag()));
-      Complex sum = series.coefficients(i, row) - linear;
-      for (const Index j : active_) sum += product(harmonic.receptance(row, j), force_(i, j));
+      Complex sum = series.coefficients(i, row) / part(place, row) - linear;
+      for (const Index j : active_) sum += product(joined_[place](row, j), force_(i, j));
       residual_[base + shift + 2 * i] = sum.real();
       residual_[base + shift + 2 * i + 1] = sum.imag();
     }
   }
+  // A mean that runs away, where friction cannot hold a constant load, is no measure of what is left of it.
+  displacement_ = std::max(displacement_, std::min(mean, farthest_mean * std::max(displacement_, linear_)));
   if (left_part_ > 0.0) residual_ -= left_part_ * left_;
   return residual_.size() == 0 ? 0.0 : residual_.cwiseAbs().maxCoeff();
 }
@@ -98,9 +137,9 @@ void HarmonicBalanceEquations::keep_residual(const SliderSeries& series) {
 void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  const auto& harmonics = *harmonics_;
   columns_.resize(count, rows * static_cast<Index>(active_.size()));
   by_mean_.resize(columns_.cols());
+  fill_diagonal(series, diagonal_);
   for (std::size_t b = 0; b < active_.size(); ++b) {
     const Index j = active_[b], from = static_cast<Index>(b) * rows;
     const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
@@ -108,37 +147,51 @@ void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
       for (int i = 0; i < count; ++i) {
         Complex by_real, by_imaginary;
         loop.derivative(series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
+        const auto place = static_cast<std::size_t>(i) + 1;
+        by_real *= part(place, j);
+        by_imaginary *= part(place, j);
         if (i == l) {
-          const double held = harmonics[static_cast<std::size_t>(i) + 1].held * holding_[j];
-          by_real -= held;
-          by_imaginary -= Complex(0.0, held);
+          by_real -= held(place, j);
+          by_imaginary -= Complex(0.0, held(place, j));
         }
         columns_(i, from + shift + 2 * l) = by_real;
         columns_(i, from + shift + 2 * l + 1) = by_imaginary;
       }
     if (!series.has_mean) continue;
     columns_.col(from).setZero();
-    by_mean_[from] = loop.mean_derivative() - harmonics[0].held * holding_[j];
+    by_mean_[from] = part(0, j) * loop.mean_derivative() - held(0, j);
     for (int l = 0; l < count; ++l)
       loop.mean_derivative(series.orders.at(l), by_mean_[from + 1 + 2 * l], by_mean_[from + 2 + 2 * l]);
+    by_mean_.segment(from + 1, 2 * count) *= part(0, j);
+  }
+}
+
+void HarmonicBalanceEquations::fill_diagonal(const SliderSeries& series, Vector& diagonal) const {
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  diagonal.resize(rows * static_cast<Index>(active_.size()));
+  for (std::size_t a = 0; a < active_.size(); ++a) {
+    const Index j = active_[a], base = static_cast<Index>(a) * rows;
+    if (series.has_mean) diagonal[base] = 1.0 / part(0, j);
+    for (int i = 0; i < series.orders.count; ++i)
+      diagonal.segment(base + shift + 2 * i, 2).setConstant(1.0 / part(static_cast<std::size_t>(i) + 1, j));
   }
 }
 
 void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix& jacobian) const {
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  const auto& harmonics = *harmonics_;
   const Index size = rows * static_cast<Index>(active_.size());
-  jacobian.setIdentity(size, size);
+  jacobian.setZero(size, size);
+  jacobian.diagonal() = diagonal_;
   for (std::size_t b = 0; b < active_.size(); ++b) {
     const Index j = active_[b], from = static_cast<Index>(b) * rows;
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const Index row = active_[a], base = static_cast<Index>(a) * rows;
       for (Index c = from; c < from + rows; ++c) {
         double* const out = jacobian.data() + c * size + base;
-        if (series.has_mean) out[0] += harmonics[0].receptance(row, j).real() * by_mean_[c];
+        if (series.has_mean) out[0] += joined_[0](row, j).real() * by_mean_[c];
         for (int i = 0; i < count; ++i) {
-          const Complex change = product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), columns_(i, c));
+          const Complex change = product(joined_[static_cast<std::size_t>(i) + 1](row, j), columns_(i, c));
           out[shift + 2 * i] += change.real();
           out[shift + 2 * i + 1] += change.imag();
         }
@@ -151,10 +204,9 @@ void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix&
 void HarmonicBalanceEquations::multiply_by_jacobian(const SliderSeries& series, const Vector& x, Vector& y) {
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  const auto& harmonics = *harmonics_;
   const auto m = static_cast<Index>(active_.size());
   changed_force_.resize(m, count);
-  y = x;
+  y = diagonal_.cwiseProduct(x);
   for (Index b = 0; b < m; ++b) {
     const auto own = x.segment(b * rows, rows);
     changed_force_.row(b).noalias() = (columns_.middleCols(b * rows, rows) * own).transpose();
@@ -162,11 +214,10 @@ void HarmonicBalanceEquations::multiply_by_jacobian(const SliderSeries& series, 
     const double mean_force = by_mean_.segment(b * rows, rows).dot(own);
     for (Index a = 0; a < m; ++a)
       y[a * rows] +=
-          harmonics[0].receptance(active_[static_cast<std::size_t>(a)], active_[static_cast<std::size_t>(b)]).real() *
-          mean_force;
+          joined_[0](active_[static_cast<std::size_t>(a)], active_[static_cast<std::size_t>(b)]).real() * mean_force;
   }
   for (int i = 0; i < count; ++i) {
-    const ComplexMatrix& receptance = harmonics[static_cast<std::size_t>(i) + 1].receptance;
+    const ComplexMatrix& receptance = joined_[static_cast<std::size_t>(i) + 1];
     for (Index a = 0; a < m; ++a) {
       Complex sum = 0.0;
       for (Index b = 0; b < m; ++b)

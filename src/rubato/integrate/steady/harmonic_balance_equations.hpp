@@ -19,22 +19,31 @@ struct CondensedHarmonic {
   ComplexVector linear;             ///< P^T Q under the loads alone [p]
 };
 
-/// The unknowns of harmonic balance: relative displacements of the sliders.
+/// A Fourier series of each slider: of its displacement, its force or what is balanced.
 struct SliderSeries {
   Orders orders;
   bool has_mean = false;
   Vector mean;                 ///< [m]
-  ComplexMatrix coefficients;  ///< U, a column a slider [count x m]
+  ComplexMatrix coefficients;  ///< a column a slider [count x m]
 
   void resize(const Orders& new_orders, bool with_mean, Index sliders);  ///< keeps what both have
 };
 
-/// U_k - U_k(linear) + R_k (F_k(U) - held h U_k) = 0 for the sliders that have a limit, and Newton's method for it.
+/// The balance for the sliders that have a limit, and Newton's method for it:
 ///
-/// The Jacobian 1 + R dF is that of all unknowns, but its two factors are not: R joins the sliders of one order, dF the
-/// orders of one slider. A large one is therefore factorised seldom; the systems between are solved by products with
-/// the two factors (GMRES), with the last factorisation as its preconditioner: loops that have changed little since
-/// then change few of its eigenvalues.
+///   U_k - U_k(linear) + R_k (F_k - held h U_k) = 0,   F = law of 1/kT + c at W = U + c F
+///
+/// A slider of stiffness kT at the displacement u does what one of the compliance 1/kT + c does at w = u + c fc: its
+/// slip is the same. The unknown is W, truncated; with c = 0 it is U. However stiff a contact is, an added compliance c
+/// keeps what the force does to W finite (an augmented Lagrangian), and which c is chosen bears on the truncation
+/// alone. With a = 1/(1 + held h c) and the net force N = F - held h U = (F - held h a W)/a, all in W,
+///
+///   a W_k - U_k(linear) + (R_k - c a) N_k(W) = 0
+///
+/// The Jacobian a + (R - c a) dN is that of all unknowns, but its two factors are not: R joins the sliders of one
+/// order, dN the orders of one slider. A large one is therefore factorised seldom; the systems between are solved by
+/// products with the two factors (GMRES), with the last factorisation as its preconditioner: loops that have changed
+/// little since then change few of its eigenvalues.
 class HarmonicBalanceEquations {
  public:
   /// @param stiffness  kT of each slider   @param holding  h, of which a part may be held in Z [m] [N/m]
@@ -43,7 +52,15 @@ class HarmonicBalanceEquations {
   }
 
   /// @param harmonics  place 0: the mean (unused without it); place 1 + i: order i, at least as many as unknown orders
-  void set(const std::vector<CondensedHarmonic>& harmonics, const Vector& limits, const Vector& offsets);
+  /// @param added      c of each slider [m] [m/N]
+  void join(const std::vector<CondensedHarmonic>& harmonics, const Vector& added);
+  /// @param offsets  what a slider that never slips should have as fc - kT u [m] [N]
+  void set(const Vector& limits, const Vector& offsets);
+  const Vector& added_compliance() const { return added_; }
+
+  /// W at which sliders are displaced by U under forces F, and the other way round from W and the loops at it.
+  SliderSeries balanced(const SliderSeries& displacement, const SliderSeries& force) const;
+  void displacement_and_force(const SliderSeries& balanced, SliderSeries& displacement, SliderSeries& force) const;
 
   struct Outcome {
     bool has_converged = false;
@@ -62,6 +79,10 @@ class HarmonicBalanceEquations {
   /// The loops and forces at the solution found.
   const std::vector<HysteresisLoop>& loops() const { return loops_; }
   const std::vector<Index>& active() const { return active_; }
+  /// N of a slider at the series evaluated last; place as in the harmonics [N]
+  Complex net_force(Index place, Index slider) const {
+    return place == 0 ? Complex(mean_force_[slider]) : force_(place - 1, slider);
+  }
   bool any_slips() const;
 
   /// Estimates what orders left out (from `first` place of the harmonics on) would change: their own displacements
@@ -75,6 +96,7 @@ class HarmonicBalanceEquations {
   /// dF of every slider by its own unknowns, at the loops evaluated last.
   void differentiate(const SliderSeries& series);
   void factorise(const SliderSeries& series);
+  void fill_diagonal(const SliderSeries& series, Vector& diagonal) const;
   void fill_jacobian(const SliderSeries& series, Matrix& jacobian) const;
   void multiply_by_jacobian(const SliderSeries& series, const Vector& x, Vector& y);
   void solve_linear(const SliderSeries& series, double tolerance, Vector& x);
@@ -83,17 +105,24 @@ class HarmonicBalanceEquations {
     return (series.has_mean ? 1 : 0) + 2 * series.orders.count;
   }
 
+  /// 1 + held h c: N = part F - held h W
+  double part(std::size_t place, Index j) const { return 1.0 + (*harmonics_)[place].held * holding_[j] * added_[j]; }
+  double held(std::size_t place, Index j) const { return (*harmonics_)[place].held * holding_[j]; }
+
   Vector stiffness_, holding_;
   const std::vector<CondensedHarmonic>* harmonics_ = nullptr;
   Vector limits_, offsets_;
   std::vector<Index> active_;
   std::vector<HysteresisLoop> loops_;
-  ComplexMatrix force_;  ///< F_k - held h U_k [count x m]
-  Vector mean_force_;
+  Vector added_, effective_;           ///< c, 1/(1/kT + c)
+  std::vector<ComplexMatrix> joined_;  ///< R_k - c a of each place [m x m]
+  ComplexMatrix force_;                ///< N_k [count x m]
+  Vector mean_force_;                  ///< N_0
   Vector residual_, step_, left_;
   double left_part_ = 0.0;
-  ComplexMatrix columns_;  ///< dF_k of the sliders [count x active rows]
-  Vector by_mean_;         ///< dF_0 [active rows]
+  ComplexMatrix columns_;  ///< dN_k of the sliders [count x active rows]
+  Vector by_mean_;         ///< dN_0 [active rows]
+  Vector diagonal_;        ///< a [active rows]
   SmallLu factor_, own_factor_;
   bool is_regular_ = true, has_factor_ = false;
   std::vector<Index> factor_active_;

@@ -14,11 +14,22 @@ namespace rubato::integrate {
 struct HarmonicBalanceSolver::Implementation {
   Implementation(const system::LocallyNonlinear& s, SteadyRequest r, HarmonicBalanceOptions o);
 
+  /// Displacements and forces of the sliders.
+  struct Motion {
+    SliderSeries displacement, force;
+    void resize(const Orders& orders, bool with_mean, Index sliders) {
+      displacement.resize(orders, with_mean, sliders);
+      force.resize(orders, with_mean, sliders);
+    }
+  };
   /// A point solved, from which the next is predicted.
   struct Past {
     double angular_frequency = 0.0;
-    SliderSeries series;
+    Motion motion;
   };
+  /// How far Newton's method goes at a point: from what the points before left, briefly, or from nothing, and less far
+  /// where the motion can be sought in another way.
+  enum class Effort { brief, limited, full };
 
   void forget();
   void take_loads(const Excitation& excitation);
@@ -26,8 +37,16 @@ struct HarmonicBalanceSolver::Implementation {
   bool condense_one(CondensedHarmonic& harmonic, double angular_frequency, int order);
   bool is_driven_beyond_friction(const Excitation& excitation);
   int orders_to_probe(const Excitation& excitation, const Orders& orders) const;
-  void predict(double angular_frequency, const Orders& orders, bool with_mean);
-  bool newton(const Excitation& excitation, bool has_solution, SteadyResponse& response);
+  bool attempt(const Excitation& excitation, Effort effort, SteadyResponse& response);
+  bool predict(double angular_frequency, const Orders& orders, bool with_mean);
+  bool newton(const Excitation& excitation, bool has_start, bool has_solution, Effort effort, SteadyResponse& response);
+  bool solve_from(const Excitation& excitation, bool has_start, bool has_solution, int& iterations);
+  Vector slider_receptances() const;
+  bool soften(const Vector& receptances);
+  double return_to(const Motion& motion, const Vector& compliance, const Excitation& excitation);
+  void forget_points();
+  double change_since(const ComplexMatrix& before) const;
+  bool has_solved_points() const { return !past.empty() || count_wanted > 1 || firmness > 0.0; }
   template <class Apply>
   bool follow(double parameter, double step, int& iterations, Apply&& apply);
   bool lower_the_limits(const Excitation& excitation, int& iterations);
@@ -37,7 +56,9 @@ struct HarmonicBalanceSolver::Implementation {
   void recover();
   void fill(const Excitation& excitation, SteadyResponse& response);
   void fill_without_answer(const Excitation& excitation, SteadyResponse& response);
-  bool walks(const Excitation& excitation, SteadyStart start, SteadyResponse& response);
+  bool can_be_shot(const Excitation& excitation, SteadyStart start);
+  system::LocallyNonlinear with_contacts_up_to(double most) const;
+  bool shoot(const Excitation& excitation, SteadyStart start, SteadyResponse& response);
   void load_on(int order, ComplexVector& load) const;
 
   const system::LocallyNonlinear& system;
@@ -54,7 +75,10 @@ struct HarmonicBalanceSolver::Implementation {
   int harmonics_stride = 0;
   std::vector<CondensedHarmonic> harmonics;  ///< place 0: mean; place 1 + i: order i
   std::vector<HarmonicBalanceEquations> equations;
-  SliderSeries series, start_series;
+  SliderSeries series;
+  Motion guess;                                ///< of Newton's method
+  double firmness = 0.0, firmness_used = 0.0;  ///< see soften; 0: none was found yet
+  double residual = 0.0;
   Vector offsets, remembered_offsets;
   std::vector<Past> past;  ///< newest first
   std::vector<const Past*> usable;
@@ -68,10 +92,13 @@ struct HarmonicBalanceSolver::Implementation {
   Vector observed_mean;
   ComplexMatrix left_out, forces_left_out, force_change;
   TurningPoints turning;
-  bool has_answer = false;                     ///< of the point solved last
+  bool can_condense = false;                   ///< the structure, at the point solved last
+  bool has_answer = false;                     ///< some orders were balanced there
   std::optional<UndampedResonance> resonance;  ///< made where it is asked for
   std::optional<bool> may_walk;                ///< springs leave a motion free that sliders see; nothing: not yet known
-  std::unique_ptr<PeriodicSolver> walking;     ///< the last point, where it drifts
+  std::unique_ptr<system::LocallyNonlinear> shot_system;  ///< that of `shot`, where it is not the one given
+  std::unique_ptr<PeriodicSolver> shot;                   ///< the last point, where no series balances it
+  std::optional<std::pair<double, double>> fastest;       ///< natural frequency, sliders removed and stuck [rad/s]
 };
 
 }  // namespace rubato::integrate

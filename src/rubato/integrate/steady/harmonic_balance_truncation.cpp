@@ -12,7 +12,6 @@ constexpr double estimate_tolerance = 1e-3;  // of the linear system: an estimat
 void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_t first, std::size_t end,
                                           ComplexMatrix& left_out, ComplexMatrix& forces_left_out,
                                           ComplexMatrix& force_change) {
-  const auto& harmonics = *harmonics_;
   const auto m = static_cast<Index>(active_.size());
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   const int count = series.orders.count;
@@ -27,24 +26,24 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
   for (std::size_t p = first; p < end; ++p) {
     stop_if_asked();
-    const CondensedHarmonic& harmonic = harmonics[p];
     const int k = series.orders.at(static_cast<int>(p) - 1);
     const auto place = static_cast<Index>(p - first);
     Matrix& own = own_factor_.matrix(2 * m);
-    own.setIdentity();
+    own.setZero();
     right.setZero();
     for (Index b = 0; b < m; ++b) {
       const Index j = active_[static_cast<std::size_t>(b)];
       const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
       const auto at = static_cast<std::size_t>(b);
-      const Complex force = loop.force(k);
+      const Complex force = part(p, j) * loop.force(k);
       loop.derivative(k, k, by_real[at], by_imaginary[at]);
-      const double held = harmonic.held * holding_[j];
+      by_real[at] = part(p, j) * by_real[at] - held(p, j);
+      by_imaginary[at] = part(p, j) * by_imaginary[at] - Complex(0.0, held(p, j));
       forces_left_out(place, j) = force;
+      own(2 * b, 2 * b) = own(2 * b + 1, 2 * b + 1) = 1.0 / part(p, j);
       for (Index a = 0; a < m; ++a) {
-        const Complex r = harmonic.receptance(active_[static_cast<std::size_t>(a)], j);
-        const Complex x = product(r, by_real[at] - held), y = product(r, by_imaginary[at] - Complex(0.0, held)),
-                      f = product(r, force);
+        const Complex r = joined_[p](active_[static_cast<std::size_t>(a)], j);
+        const Complex x = product(r, by_real[at]), y = product(r, by_imaginary[at]), f = product(r, force);
         own(2 * a, 2 * b) += x.real();
         own(2 * a + 1, 2 * b) += x.imag();
         own(2 * a, 2 * b + 1) += y.real();
@@ -59,8 +58,7 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       const Index j = active_[static_cast<std::size_t>(b)];
       const auto at = static_cast<std::size_t>(b);
       left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
-      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at] -
-                                   harmonic.held * holding_[j] * left_out(place, j);
+      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at];
     }
   }
 
@@ -77,12 +75,12 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;
         loop.derivative(series.orders.at(i), l, real, imaginary);
-        force_change(i, j) += u.real() * real + u.imag() * imaginary;
+        force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (u.real() * real + u.imag() * imaginary);
       }
       if (series.has_mean) {
         double real, imaginary;
         loop.mean_derivative(l, real, imaginary);
-        mean_change[j] += u.real() * real + u.imag() * imaginary;
+        mean_change[j] += part(0, j) * (u.real() * real + u.imag() * imaginary);
       }
     }
   }
@@ -90,12 +88,12 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   for (Index a = 0; a < m; ++a) {
     const Index row = active_[static_cast<std::size_t>(a)];
     if (series.has_mean) {
-      for (const Index j : active_) change[a * rows] -= harmonics[0].receptance(row, j).real() * mean_change[j];
+      for (const Index j : active_) change[a * rows] -= joined_[0](row, j).real() * mean_change[j];
     }
     for (int i = 0; i < count; ++i) {
       Complex sum = 0.0;
       for (const Index j : active_)
-        sum -= product(harmonics[static_cast<std::size_t>(i) + 1].receptance(row, j), force_change(i, j));
+        sum -= product(joined_[static_cast<std::size_t>(i) + 1](row, j), force_change(i, j));
       change[a * rows + shift + 2 * i] += sum.real();
       change[a * rows + shift + 2 * i + 1] += sum.imag();
     }
@@ -106,11 +104,11 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     for (int l = 0; l < count; ++l) {
       const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
-      force_change(l, j) -= harmonics[static_cast<std::size_t>(l) + 1].held * holding_[j] * Complex(re, im);
+      force_change(l, j) -= held(static_cast<std::size_t>(l) + 1, j) * Complex(re, im);
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;
         loop.derivative(series.orders.at(i), series.orders.at(l), real, imaginary);
-        force_change(i, j) += re * real + im * imaginary;
+        force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (re * real + im * imaginary);
       }
     }
   }
