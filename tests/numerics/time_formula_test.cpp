@@ -124,6 +124,20 @@ TEST(TimeFormulaSwitches, OfCurvedArgumentsAreFound) {
   expect_times("exp(-t) < 1e-3", {3.0 * std::log(10.0)});
 }
 
+// No lattice of samples knows of them: the pulse is 2e-7 of the interval.
+TEST(TimeFormulaSwitches, AreFoundHoweverCloseToOneAnother) {
+  for (const double place : {0.3, 25.0, 31.4159, 49.99}) {
+    const std::vector<double> found = switches("exp(-((t - " + std::to_string(place) + ")/1e-5)^2) > 0.5");
+    ASSERT_EQ(found.size(), 2u) << place;
+    const double half = 1e-5 * std::sqrt(std::log(2.0));
+    EXPECT_NEAR(found[0], place - half, 1e-13);
+    EXPECT_NEAR(found[1], place + half, 1e-13);
+  }
+  expect_times("log(t) > -3", {std::exp(-3.0)});
+  expect_times("sqrt(t - 2) > 1", {3.0});
+  EXPECT_EQ(switches("abs(max(0, sin(pi*t)))", 0.0, 5.0).size(), 4u);
+}
+
 TEST(TimeFormulaSwitches, HaveTheBranchOfEachSide) {
   const auto values = [](const std::string& text, double t) {
     const TimeFormula formula(text, parameters);

@@ -1,4 +1,5 @@
 #include <rubato/analysis/automatic_step.hpp>
+#include <rubato/analysis/load_swings.hpp>
 #include <rubato/integrate/stability.hpp>
 
 #include <fmt/format.h>
@@ -6,20 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace rubato::analysis {
 namespace {
 
 constexpr double least_step = 1e-12;  // of the duration, unless the study says
-
-double shortest_period(const system::LocallyNonlinear& system) {
-  double fastest = 0.0;
-  for (const auto& term : system.loads().terms())
-    if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law))
-      fastest = std::max(fastest, std::abs(harmonic->angular_frequency));
-  return fastest > 0.0 ? 2.0 * std::numbers::pi / fastest : HUGE_VAL;
-}
 
 integrate::Controller controller_of(const std::string& name) {
   if (name == "fixed") return integrate::FixedStep{};
@@ -46,11 +38,11 @@ integrate::EstimatorKind estimator_of(const model::StepDescription& description,
   return integrate::default_estimator(method, tolerance);
 }
 
-/// The largest step that neither passes over the loads nor leaves the stable range.
+/// The largest step that neither passes over harmonic loads nor leaves the stable range.
 double largest_step(const std::string& title, const model::StepDescription& description,
-                    const integrate::Method& method, const system::LocallyNonlinear& system,
+                    const integrate::Method& method, const system::LocallyNonlinear& system, const LoadSwings& swings,
                     const numerics::Parameters& parameters, double duration, bool allow_unstable) {
-  const double safe = std::min(duration / 50.0, shortest_period(system) / 6.0);
+  const double safe = std::min(duration / 50.0, swings.harmonic_limit());
   const double largest = std::min(duration, positive_or(description.largest, safe, title + "largest", parameters));
   if (allow_unstable) return largest;
   const integrate::ModelStability limit = integrate::stability_of(method, system);
@@ -109,10 +101,19 @@ void plan_step_range(const std::string& title, const model::StepDescription& des
                        title + "the controller fixed keeps the first step; give it, first = ... [s]");
 }
 
+void plan_swings(const model::StepDescription& description, const LoadSwings& swings, integrate::StepPlan& plan,
+                 std::vector<std::string>& warnings) {
+  if (std::holds_alternative<integrate::FixedStep>(plan.controller))
+    return swings.warn_of_long_steps(plan.first, warnings);
+  if (description.largest) return;
+  swings.bound(plan);
+  swings.warn_of_unknown(warnings);
+}
+
 AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
                                   const integrate::Method& method, const system::LocallyNonlinear& system,
                                   const system::State& start, const numerics::Parameters& parameters, double duration,
-                                  bool allow_unstable) {
+                                  bool allow_unstable, std::vector<std::string>& warnings) {
   const std::string title = analysis + "step: ";
   AutomaticStep step;
   step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
@@ -122,15 +123,17 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   plan.locate_events = description.locate_events.value_or(system.stop_count() > 0);
   plan.locate_sliders = description.locate_events.has_value();
   plan.rebuild = description.rebuild;
+  const LoadSwings swings(system, parameters, duration);
   plan_step_range(title, description, parameters, duration,
-                  largest_step(title, description, method, system, parameters, duration, allow_unstable), plan);
+                  largest_step(title, description, method, system, swings, parameters, duration, allow_unstable), plan);
+  plan_swings(description, swings, plan, warnings);
   step.estimator = estimator_of(description, method, step.tolerance, reference, system);
   try {
     const auto stepper = integrate::make_stepper(method, system);
     const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
     estimator->start(integrate::consistent_start(system, start));
     const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
-    step.expected_steps = std::ceil(duration / (is_fixed ? plan.first : plan.largest));
+    step.expected_steps = is_fixed ? std::ceil(duration / plan.first) : swings.least_steps(plan);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }

@@ -12,6 +12,8 @@
 
 namespace rubato::analysis {
 
+class LoadSwings;
+
 /// A step that chooses itself, with all its values.
 struct AutomaticStep {
   integrate::StepPlan plan;
@@ -31,14 +33,20 @@ void plan_step_range(const std::string& title, const model::StepDescription& des
                      const numerics::Parameters& parameters, double duration, double largest,
                      integrate::StepPlan& plan);
 
+/// Bounds the steps of a plan by what the loads swing, unless the study says how long they may be; warns where that is
+/// not known, and where the controller `fixed` keeps a step that is too long.
+void plan_swings(const model::StepDescription& description, const LoadSwings& swings, integrate::StepPlan& plan,
+                 std::vector<std::string>& warnings);
+
 /// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator
 /// `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the
 /// duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
-/// `allow_unstable`, the stability limit of the method. Throws InvalidInput at the place of the value.
+/// `allow_unstable`, the stability limit of the method; where formulas of loads swing, shorter. Throws InvalidInput at
+/// the place of the value.
 AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
                                   const integrate::Method& method, const system::LocallyNonlinear& system,
                                   const system::State& start, const numerics::Parameters& parameters, double duration,
-                                  bool allow_unstable);
+                                  bool allow_unstable, std::vector<std::string>& warnings);
 
 /// Streams every try of a step into the table `steps`: time, step, error and what became of it.
 class StepRecorder final : public integrate::TryLog {

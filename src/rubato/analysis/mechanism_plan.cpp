@@ -1,6 +1,6 @@
 #include <rubato/analysis/beam_section_forces.hpp>
+#include <rubato/analysis/load_swings.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
-#include <rubato/analysis/mechanism_load_swings.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
@@ -60,7 +60,8 @@ AutomaticStep fixed_step(double step, double duration) {
 
 AutomaticStep automatic_step(const std::string& title, const model::StepDescription& description,
                              const integrate::Method& method, const system::Mechanism& mechanism,
-                             const system::State& start, const numerics::Parameters& parameters, double duration) {
+                             const system::State& start, const numerics::Parameters& parameters, double duration,
+                             std::vector<std::string>& warnings) {
   AutomaticStep step;
   step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
   const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
@@ -75,9 +76,11 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
                            "solves, so that steps of mechanisms always end there; remove it");
   plan.locate_events = true;
   plan.rebuild = description.rebuild;
-  const double largest = std::min(duration / 50.0, period_limit(mechanism.model(), duration));
+  const LoadSwings swings(mechanism.model(), parameters, duration);
+  const double largest = std::min(duration / 50.0, swings.harmonic_limit());
   plan_step_range(title, description, parameters, duration,
                   std::min(duration, positive_or(description.largest, largest, title + "largest", parameters)), plan);
+  plan_swings(description, swings, plan, warnings);
   const bool is_jump = description.estimator == "inertia_jump" ||
                        (description.estimator.empty() && is_paper && integrate::is_of_second_order(method));
   if (description.reference_is_initial)
@@ -100,7 +103,7 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }
-  step.expected_steps = std::ceil(duration / (description.controller == "fixed" ? plan.first : plan.largest));
+  step.expected_steps = description.controller == "fixed" ? std::ceil(duration / plan.first) : swings.least_steps(plan);
   return step;
 }
 
@@ -174,9 +177,8 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   if (plan.failure.empty()) settle_start(where, mechanism, transient.duration, transient.start);
   warn_of_locks_behind(mechanism, transient.start, plan.warnings);
   if (description.automatic_step) {
-    if (!description.automatic_step->largest) warn_of_fast_swings(mechanism.model(), transient.duration, plan.warnings);
     transient.automatic = automatic_step(title + "step: ", *description.automatic_step, transient.method, mechanism,
-                                         transient.start, parameters, transient.duration);
+                                         transient.start, parameters, transient.duration, plan.warnings);
   } else {
     if (!description.step) throw InvalidInput(where, title + missing_step);
     const double step = positive_or(description.step, 0.0, title + "step", parameters);
@@ -189,6 +191,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                          fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
                                      transient.duration / step, step));
     transient.automatic = fixed_step(step, transient.duration);
+    LoadSwings(mechanism.model(), parameters, transient.duration).warn_of_long_steps(step, plan.warnings);
   }
   refuse_short_tables(mechanism.model(), transient.duration, where);
   for (const auto& drive : mechanism.model().drives)

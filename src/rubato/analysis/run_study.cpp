@@ -45,6 +45,7 @@ AnalysisOutline outline(const TransientPlan& plan, const system::LocallyNonlinea
   else
     result.summary = fmt::format("transient, {}, {}to t = {} s", plan.method.name,
                                  plan.automatic ? summary(*plan.automatic) + ", " : "", plan.duration);
+  result.warnings = plan.warnings;
   return result;
 }
 

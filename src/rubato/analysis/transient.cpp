@@ -167,6 +167,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   TransientObserver observer(plan, system, recorder, context);
   system::State state = integrate::consistent_start(system, plan.start);
   RunReport run;
+  run.warnings = plan.warnings;
   integrate::MarchReport report;
   if (plan.automatic)
     context.progress.begin(name, plan.duration, "s of motion");

@@ -1,3 +1,4 @@
+#include <rubato/analysis/load_swings.hpp>
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
@@ -215,7 +216,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
                     title, system.supports()->names().front()));
   if (description.automatic_step) {
     plan.automatic = plan_automatic_step(title, *description.automatic_step, plan.method, system, plan.start,
-                                         parameters, plan.duration, description.allow_unstable);
+                                         parameters, plan.duration, description.allow_unstable, plan.warnings);
   } else if (!is_exact) {
     if (!description.step) throw InvalidInput(where, title + missing_step);
     plan.step = positive(*description.step, parameters, title + "step", where);
@@ -228,6 +229,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
                          fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
                                      plan.duration / plan.step, plan.step));
     if (!description.allow_unstable) require_stable(plan, system, place(description.step->where, where));
+    LoadSwings(system, parameters, plan.duration).warn_of_long_steps(plan.step, plan.warnings);
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);

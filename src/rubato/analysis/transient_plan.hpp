@@ -34,7 +34,8 @@ struct TransientPlan {
   double interval = 0.0;      ///< [s]
   std::vector<double> times;  ///< rising [s]
   bool energy = true;
-  double rows = 0.0;  ///< expected number of rows
+  double rows = 0.0;                       ///< expected number of rows
+  std::vector<std::string> warnings = {};  ///< of steps that may not see what a load does
 };
 
 /// What is wrong with a transient without a step.

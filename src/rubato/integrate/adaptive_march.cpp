@@ -59,7 +59,17 @@ class Marcher {
   /// Where nothing moves and nothing says how long a step may be, a thousandth of the march is a start.
   double first_step() const {
     const double step = estimator_.first_step();
-    return std::min(plan_.largest, std::isfinite(step) ? step : 1e-3 * (end_ - base_.t));
+    return std::min(largest_step(), std::isfinite(step) ? step : 1e-3 * (end_ - base_.t));
+  }
+
+  /// The longest step that may start now.
+  double largest_step() const {
+    const auto& bounds = plan_.bounds;
+    while (next_bound_ < bounds.size() && bounds[next_bound_].to <= base_.t) ++next_bound_;
+    double largest = plan_.largest;
+    for (std::size_t i = next_bound_; i < bounds.size() && bounds[i].from < base_.t + largest; ++i)
+      largest = std::min(largest, std::max(0.0, bounds[i].from - base_.t) + bounds[i].step);
+    return largest;
   }
 
   struct Length {
@@ -71,7 +81,7 @@ class Marcher {
   /// The step to try: not beyond the next breakpoint, and equal parts of the way to one that is not the end.
   Length next_length() const {
     const double next = breakpoints_[next_breakpoint_], rest = next - base_.t;
-    double step = std::min(wanted_, plan_.largest);
+    double step = std::min(wanted_, largest_step());
     const auto reaches_it = [&] { return step >= rest * (1.0 - same_step); };
     if (!reaches_it() && next_breakpoint_ + 1 < breakpoints_.size()) step = part_of(rest, step);
     const bool arrives = reaches_it();
@@ -177,7 +187,7 @@ class Marcher {
   /// Looks for a transition in the step that was tried, and shortens it to end there. Returns false where a try fails.
   bool has_looked_for_events(Length& length, bool& is_event) {
     // A step of the resolution would be made of round-off.
-    const double least = std::max(least_progress * std::min(wanted_, plan_.largest), 10.0 * timeline_.resolution());
+    const double least = std::max(least_progress * std::min(wanted_, largest_step()), 10.0 * timeline_.resolution());
     Crossing crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::between);
     if (crossing.guard >= 0 && crossing.seen < 1.0) {
       // Between the ends, where stiff parts make forces of what interpolation errs by: a step there tells.
@@ -258,7 +268,7 @@ class Marcher {
     constexpr double nothing = 1e-4;
     ++next_breakpoint_;
     part_ = 0.0;
-    const bool is_short = base_step_ < nothing * std::min(wanted_, plan_.largest);
+    const bool is_short = base_step_ < nothing * std::min(wanted_, largest_step());
     if (!timeline_.jumps_at(base_.t) && !is_short) return estimator_.forget();
     if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
     start_anew();
@@ -314,6 +324,7 @@ class Marcher {
   TryLog* log_;
   std::vector<double> breakpoints_;  // and the end
   std::size_t next_breakpoint_ = 0;
+  mutable std::size_t next_bound_ = 0;  // the first that does not end before base_.t
   double wanted_ = 0.0, base_step_ = 0.0, lost_ = 0.0;
   double part_ = 0.0;                 // the last step since the last breakpoint
   std::array<double, 16> lengths_{};  // of the last steps, the last first

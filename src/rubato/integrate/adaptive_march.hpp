@@ -4,15 +4,21 @@
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/estimators/estimator.hpp>
 #include <rubato/integrate/timeline.hpp>
+#include <rubato/numerics/formula_swings.hpp>
+
+#include <vector>
 
 namespace rubato::integrate {
 
 /// How a march picks its steps.
 struct StepPlan {
   Controller controller = PiControl{};
-  double first = 0.0;          ///< [s]; 0: the estimator's, and after a jump of a load its again
-  double smallest = 0.0;       ///< a controller that asks for less ends the march [s]
-  double largest = HUGE_VAL;   ///< [s]
+  double first = 0.0;         ///< [s]; 0: the estimator's, and after a jump of a load its again
+  double smallest = 0.0;      ///< a controller that asks for less ends the march [s]
+  double largest = HUGE_VAL;  ///< [s]
+  /// Where steps must be shorter still, to see how loads swing: rising, apart. A step that starts before such a time
+  /// reaches into it by no more than its bound.
+  std::vector<numerics::StepBound> bounds;
   bool locate_events = false;  ///< steps end at transitions of the timeline
   bool locate_sliders = true;  ///< those of the sliders of a structure among them, else those of its stops alone
   bool rebuild = true;  ///< the auxiliary acceleration when the step changes; the paper of Cardona and Cassano does not

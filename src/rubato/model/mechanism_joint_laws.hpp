@@ -2,6 +2,8 @@
 
 #include <rubato/model/mechanism_assembly.hpp>
 
+#include <rubato/numerics/formula_swings.hpp>
+
 #include <fmt/format.h>
 
 // Private to the model floor: what a joint does to the coordinate that it leaves free, in the plane and in space alike.
@@ -78,7 +80,7 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
         joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;
     try {
       elements.push_back(make_joint_drive(joint.name, s, text, assembly.parameters, when));
-      if (auto formula = numerics::switching_formula(text, assembly.parameters, {s.name(), "rate"}))
+      if (auto formula = numerics::known_formula(text, assembly.parameters, {s.name(), "rate"}))
         assembly.mechanism.joint_formulas.push_back(std::move(*formula));
     } catch (const InvalidInput& fault) {
       throw InvalidInput(joint.drive->where,

@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/formula_slopes.hpp>
+#include <rubato/numerics/formula_functions.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
@@ -58,91 +59,6 @@ D atan2_of(const D& y, const D& x) {
           (y.second_rate * x.value - y.value * x.second_rate - 2.0 * rate * (x.value * x.rate + y.value * y.rate)) /
               square};
 }
-
-using Entry = std::pair<const char*, D (*)(double)>;
-const std::array<Entry, 18> functions{{
-    {"sin",
-     [](double x) {
-       return D{std::sin(x), std::cos(x), -std::sin(x)};
-     }},
-    {"cos",
-     [](double x) {
-       return D{std::cos(x), -std::sin(x), -std::cos(x)};
-     }},
-    {"tan",
-     [](double x) {
-       const double f = std::tan(x), first = 1.0 + f * f;
-       return D{f, first, 2.0 * f * first};
-     }},
-    {"asin",
-     [](double x) {
-       const double first = 1.0 / std::sqrt(1.0 - x * x);
-       return D{std::asin(x), first, x * first * first * first};
-     }},
-    {"acos",
-     [](double x) {
-       const double first = -1.0 / std::sqrt(1.0 - x * x);
-       return D{std::acos(x), first, x * first * first * first};
-     }},
-    {"atan",
-     [](double x) {
-       const double first = 1.0 / (1.0 + x * x);
-       return D{std::atan(x), first, -2.0 * x * first * first};
-     }},
-    {"sinh",
-     [](double x) {
-       return D{std::sinh(x), std::cosh(x), std::sinh(x)};
-     }},
-    {"cosh",
-     [](double x) {
-       return D{std::cosh(x), std::sinh(x), std::cosh(x)};
-     }},
-    {"tanh",
-     [](double x) {
-       const double f = std::tanh(x), first = 1.0 - f * f;
-       return D{f, first, -2.0 * f * first};
-     }},
-    {"asinh",
-     [](double x) {
-       const double first = 1.0 / std::sqrt(x * x + 1.0);
-       return D{std::asinh(x), first, -x * first * first * first};
-     }},
-    {"acosh",
-     [](double x) {
-       const double first = 1.0 / std::sqrt(x * x - 1.0);
-       return D{std::acosh(x), first, -x * first * first * first};
-     }},
-    {"atanh",
-     [](double x) {
-       const double first = 1.0 / (1.0 - x * x);
-       return D{std::atanh(x), first, 2.0 * x * first * first};
-     }},
-    {"log2",
-     [](double x) {
-       return D{std::log2(x), std::numbers::log2e / x, -std::numbers::log2e / (x * x)};
-     }},
-    {"log10",
-     [](double x) {
-       return D{std::log10(x), std::numbers::log10e / x, -std::numbers::log10e / (x * x)};
-     }},
-    {"log",
-     [](double x) {
-       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
-     }},
-    {"ln",
-     [](double x) {
-       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
-     }},
-    {"exp",
-     [](double x) {
-       return D{std::exp(x), std::exp(x), std::exp(x)};
-     }},
-    {"sqrt",
-     [](double x) {
-       const double f = std::sqrt(x);
-       return D{f, 0.5 / f, -0.25 / (f * x)};
-     }},
-}};
 
 D truth(bool is_true) { return {is_true ? 1.0 : 0.0, 0.0, 0.0}; }
 
@@ -356,15 +272,15 @@ class TimeFormulaParser {
       if (name == "sign") return add(Kind::direction, arguments[0]);
       if (name == "rint") return add(Kind::rounded, arguments[0]);
     }
-    TimeFormula::Function function = nullptr;
-    for (const auto& [known, of] : functions)
-      if (name == known) function = of;
-    if (!function || arguments.size() != 1) {
+    const auto& functions = formula_functions();
+    const auto function =
+        std::find_if(functions.begin(), functions.end(), [&](const FormulaFunction& one) { return name == one.name; });
+    if (function == functions.end() || arguments.size() != 1) {
       at_ = start;
       refuse();
     }
     const int node = add(Kind::function, arguments[0]);
-    formula_.nodes_.back().function = function;
+    formula_.nodes_.back().function = function->of;
     return node;
   }
 

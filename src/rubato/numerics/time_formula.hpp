@@ -33,9 +33,9 @@ class TimeFormula {
   /// Whether it branches anywhere with t alone.
   bool has_switches() const;
   /// The times in (from, to) at which a branch changes, rising: where what is compared becomes equal, or the argument
-  /// of abs or sign vanishes, or that of rint is half an integer. To round-off where that is straight in t between the
-  /// changes within it; else it is followed with steps of at most 1/16384 of the interval and of a part of its own time
-  /// scale: a pair of changes within a shorter time, out of nothing, stays unseen.
+  /// of abs or sign vanishes, or that of rint is half an integer. To round-off, and all of them, however close they
+  /// are: enclosures of what is compared tell where it has no zero (formula_enclosure.hpp). None where there are more
+  /// than 262,144, or where the search for them would take longer than about a second.
   std::vector<double> switches(double from, double to) const;
   const std::string& text() const { return text_; }
 

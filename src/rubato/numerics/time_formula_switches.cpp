@@ -1,4 +1,6 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/formula_enclosure.hpp>
+#include <rubato/numerics/formula_swings.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
@@ -9,27 +11,33 @@ namespace rubato::numerics {
 namespace {
 
 constexpr double same_time = 4.0 * std::numeric_limits<double>::epsilon();  // relative
-// Steps along an argument that is not straight: a share of the interval, at most and at least, and of its time scale.
-constexpr double longest = 1.0 / 16384.0, shortest = 1.0 / 1048576.0, of_scale = 0.3;
+constexpr std::size_t most_switches = 1u << 18;                             // 2 MB; a run ends a step at each
+constexpr std::size_t most_operations = 1u << 24;                           // of enclosures: about a second
 
 }  // namespace
 
 /// Follows what is compared in each switch of a formula, the inner switches first: between their changes it is smooth.
-class SwitchSearch {
+/// Where it is not straight, the interval is divided until the argument has no zero in a part, or rises or falls
+/// through the whole of it, as enclosures of value and rate tell (Moore, Kearfott and Cloud 2009, chapter 8).
+class SwitchFinder {
  public:
-  SwitchSearch(const TimeFormula& formula, double from, double to) : formula_(formula), from_(from), to_(to) {}
+  SwitchFinder(const TimeFormula& formula, double from, double to)
+      : formula_(formula), nodes_(SwitchSearch::nodes(formula)), from_(from), to_(to), enclosure_(formula) {}
 
-  std::vector<double> find() {
-    for (const Node& node : formula_.nodes_) {  // what a node is made of comes before it
+  /// None where there are too many.
+  std::optional<std::vector<double>> find() {
+    for (const Node& node : nodes_) {  // what a node is made of comes before it
       shapes_.push_back(shape_of(node));
       if (!switches_with_time(node)) continue;
       std::vector<double> ends = found_;
       ends.push_back(to_);
       changes_.clear();
+      enclosure_.choose({node.first, node.second});
       double start = from_;
       for (const double end : ends) {
         follow(node, start, end);
         start = end;
+        if (are_too_many_) return std::nullopt;
       }
       add_switches(changes_, from_, to_, found_);
     }
@@ -37,7 +45,7 @@ class SwitchSearch {
   }
 
   bool finds_any() {
-    for (const Node& node : formula_.nodes_) {
+    for (const Node& node : nodes_) {
       shapes_.push_back(shape_of(node));
       if (switches_with_time(node)) return true;
     }
@@ -45,8 +53,8 @@ class SwitchSearch {
   }
 
  private:
-  using Kind = TimeFormula::Kind;
-  using Node = TimeFormula::Node;
+  using Kind = SwitchSearch::Kind;
+  using Node = SwitchSearch::Node;
   enum class Shape { constant, straight, curved, unknown };  // between the changes within
 
   static bool is_switch(const Node& node) {
@@ -112,48 +120,67 @@ class SwitchSearch {
   struct Point {
     double t = 0.0;
     TimeDerivatives argument;  // of the switch: it changes at levels of this
-    double size = 0.0;         // of the terms of the argument
   };
 
   Point at(const Node& node, double t, int direction) const {
-    const TimeDerivatives a = formula_.at(node.first, t, direction);
-    if (node.second < 0) return {t, a, std::abs(a.value)};
-    const TimeDerivatives b = formula_.at(node.second, t, direction);
-    return {
-        t, {a.value - b.value, a.rate - b.rate, a.second_rate - b.second_rate}, std::abs(a.value) + std::abs(b.value)};
+    const TimeDerivatives a = SwitchSearch::at(formula_, node.first, t, direction);
+    if (node.second < 0) return {t, a};
+    const TimeDerivatives b = SwitchSearch::at(formula_, node.second, t, direction);
+    return {t, {a.value - b.value, a.rate - b.rate, a.second_rate - b.second_rate}};
   }
 
   /// Within (start, end), where the argument is smooth.
   void follow(const Node& node, double start, double end) {
-    Point last = at(node, start, 1);
-    if (shape_of_argument(node) == Shape::straight) return take_levels(node, last, at(node, end, -1));
-    const double range = to_ - from_;
-    double size = node.kind == Kind::rounded ? 1.0 : 0.0;
-    while (last.t < end) {
-      size = std::max(size, node.kind == Kind::rounded ? 1.0 : last.size);
-      const double speed =
-          std::max(std::abs(last.argument.rate) / size, std::sqrt(std::abs(last.argument.second_rate) / size));
-      // Also where the scale is no number.
-      const double step =
-          speed * longest * range > of_scale ? std::max(of_scale / speed, shortest * range) : longest * range;
-      const bool arrives = !(last.t + step < end);
-      const Point next = at(node, arrives ? end : last.t + step, arrives ? -1 : 1);
-      if (last.argument.rate * next.argument.rate < 0.0) {
-        const Point turn = turn_between(node, last, next);
-        take_levels(node, last, turn);
-        take_levels(node, turn, next);
-      } else {
-        take_levels(node, last, next);
+    if (shape_of_argument(node) == Shape::straight) return take_levels(node, at(node, start, 1), at(node, end, -1));
+    struct Part {
+      double from, to;
+    };
+    std::vector<Part> open{{start, end}};
+    const auto point = [&](double t) { return at(node, t, t == start ? 1 : t == end ? -1 : 0); };
+    while (!open.empty() && !are_too_many_) {
+      const Part part = open.back();
+      open.pop_back();
+      // Ends are switches of what is within, to round-off.
+      const Interval t{part.from == start ? start + round_off(start) : part.from,
+                       part.to == end ? end - round_off(end) : part.to};
+      const Argument argument = argument_over(node, t);
+      if (!has_level(node, argument.value)) continue;
+      const double middle = 0.5 * (part.from + part.to);
+      const bool is_least = part.to - part.from <= 4.0 * std::max(round_off(part.from), round_off(part.to));
+      if (argument.rises_or_falls || is_least) {
+        const Point first = point(part.from), last = point(part.to);
+        const bool are_numbers = std::isfinite(first.argument.value) && std::isfinite(last.argument.value);
+        if (are_numbers || is_least) {
+          take_levels(node, first, last);
+          continue;
+        }
       }
-      last = next;
+      open.push_back({middle, part.to});
+      open.push_back({part.from, middle});
     }
   }
 
-  Point turn_between(const Node& node, const Point& first, const Point& second) const {
-    double low = first.t, high = second.t;
-    for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
-      (at(node, middle, 0).argument.rate * first.argument.rate > 0.0 ? low : high) = middle;
-    return at(node, low, 1);
+  double round_off(double t) const { return 4.0 * same_time * std::abs(t) + 1e-15 * (to_ - from_); }
+
+  struct Argument {
+    Interval value;
+    bool rises_or_falls = false;
+  };
+  Argument argument_over(const Node& node, const Interval& t) {
+    operations_ += enclosure_.cost();
+    if (operations_ > most_operations) are_too_many_ = true;
+    if (t.is_empty()) return {Interval::whole(), false};
+    enclosure_.evaluate(t, 1);
+    IntervalSeries argument = enclosure_.of(node.first);
+    if (node.second >= 0) argument = series::difference(argument, enclosure_.of(node.second), 1);
+    const Interval& rate = argument.c[1];
+    return {argument.c[0], rate.low > 0.0 || rate.high < 0.0};
+  }
+
+  static bool has_level(const Node& node, const Interval& value) {
+    if (value.is_empty()) return false;
+    if (node.kind != Kind::rounded) return value.has(0.0) && value.size() > 0.0;
+    return std::ceil(value.low - 0.5) <= std::floor(value.high - 0.5);
   }
 
   /// Between two points from one to the other of which the argument rises, or falls.
@@ -162,11 +189,13 @@ class SwitchSearch {
     if (!std::isfinite(from) || !std::isfinite(to) || from == to) return;
     if (node.kind != Kind::rounded) {
       if (from != 0.0 && (from < 0.0 ? to >= 0.0 : to <= 0.0)) changes_.push_back(time_of(node, 0.0, first, second));
+      are_too_many_ = are_too_many_ || changes_.size() > most_switches;
       return;
     }
     const double lowest = std::ceil(std::min(from, to) - 0.5), highest = std::floor(std::max(from, to) - 0.5);
-    const double room = static_cast<double>(most_levels) - static_cast<double>(changes_.size());
-    if (!(highest - lowest < room)) return;
+    const double room = static_cast<double>(most_switches) - static_cast<double>(changes_.size());
+    are_too_many_ = are_too_many_ || !(highest - lowest < room);
+    if (are_too_many_) return;
     for (double integer = lowest; integer <= highest; ++integer)
       if (integer + 0.5 != from) changes_.push_back(time_of(node, integer + 0.5, first, second));
   }
@@ -190,28 +219,41 @@ class SwitchSearch {
     return high;
   }
 
-  static constexpr std::size_t most_levels = 1000000;
-
   const TimeFormula& formula_;
+  const std::vector<Node>& nodes_;
   double from_, to_;
   std::vector<Shape> shapes_;
   std::vector<double> found_, changes_;
+  FormulaEnclosure enclosure_;
+  std::size_t operations_ = 0;
+  bool are_too_many_ = false;
 };
 
-bool TimeFormula::has_switches() const { return SwitchSearch(*this, 0.0, 0.0).finds_any(); }
+bool TimeFormula::has_switches() const { return SwitchFinder(*this, 0.0, 0.0).finds_any(); }
+
+std::optional<TimeFormula> known_formula(const std::string& text, const Parameters& parameters,
+                                         const std::vector<std::string>& others) {
+  try {
+    return TimeFormula(text, parameters, others);
+  } catch (const InvalidInput&) {
+    // What makes no formula is refused by Expression; this has a function without a derivative.
+    return {};
+  }
+}
 
 std::optional<TimeFormula> switching_formula(const std::string& text, const Parameters& parameters,
                                              const std::vector<std::string>& others) {
-  try {
-    TimeFormula formula(text, parameters, others);
-    if (formula.has_switches()) return formula;
-  } catch (const InvalidInput&) {
-    // What makes no formula is refused by Expression; this has a function without a derivative.
-  }
-  return {};
+  std::optional<TimeFormula> formula = known_formula(text, parameters, others);
+  return formula && formula->has_switches() ? formula : std::nullopt;
 }
 
-std::vector<double> TimeFormula::switches(double from, double to) const { return SwitchSearch(*this, from, to).find(); }
+std::optional<std::vector<double>> find_switches(const TimeFormula& formula, double from, double to) {
+  return SwitchFinder(formula, from, to).find();
+}
+
+std::vector<double> TimeFormula::switches(double from, double to) const {
+  return find_switches(*this, from, to).value_or(std::vector<double>{});
+}
 
 void add_switches(const std::vector<double>& switches, double from, double to, std::vector<double>& times) {
   std::vector<double> sorted = switches;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace rubato::integrate {
@@ -14,10 +15,16 @@ struct Sample {
   double t, value;
 };
 
-/// A law at equal distances and at its kinks, on both sides of a jump.
+/// A law at distances that no period meets (the multiples of the golden ratio within equal parts), and at its kinks, on
+/// both sides of a jump.
 std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts) {
   std::vector<double> times;
-  for (int i = 0; i <= parts; ++i) times.push_back(duration * i / parts);
+  times.push_back(0.0);
+  for (int i = 0; i < parts; ++i) {
+    const double place = std::fmod((i + 1) * std::numbers::phi, 1.0);
+    times.push_back(duration * (i + place) / parts);
+  }
+  times.push_back(duration);
   const model::Kinks kinks = model::kinks(law, 0.0, duration);
   times.insert(times.end(), kinks.rows.begin(), kinks.rows.end());
   times.insert(times.end(), kinks.switches.begin(), kinks.switches.end());

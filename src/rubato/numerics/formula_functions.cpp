@@ -1,0 +1,117 @@
+#include <rubato/numerics/formula_functions.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace rubato::numerics {
+namespace {
+
+using D = TimeDerivatives;
+
+const std::array<FormulaFunction, 18> functions{{
+    {"sin",
+     [](double x) {
+       return D{std::sin(x), std::cos(x), -std::sin(x)};
+     },
+     series::sin},
+    {"cos",
+     [](double x) {
+       return D{std::cos(x), -std::sin(x), -std::cos(x)};
+     },
+     series::cos},
+    {"tan",
+     [](double x) {
+       const double f = std::tan(x), first = 1.0 + f * f;
+       return D{f, first, 2.0 * f * first};
+     },
+     series::tan},
+    {"asin",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(1.0 - x * x);
+       return D{std::asin(x), first, x * first * first * first};
+     },
+     series::asin},
+    {"acos",
+     [](double x) {
+       const double first = -1.0 / std::sqrt(1.0 - x * x);
+       return D{std::acos(x), first, x * first * first * first};
+     },
+     series::acos},
+    {"atan",
+     [](double x) {
+       const double first = 1.0 / (1.0 + x * x);
+       return D{std::atan(x), first, -2.0 * x * first * first};
+     },
+     series::atan},
+    {"sinh",
+     [](double x) {
+       return D{std::sinh(x), std::cosh(x), std::sinh(x)};
+     },
+     series::sinh},
+    {"cosh",
+     [](double x) {
+       return D{std::cosh(x), std::sinh(x), std::cosh(x)};
+     },
+     series::cosh},
+    {"tanh",
+     [](double x) {
+       const double f = std::tanh(x), first = 1.0 - f * f;
+       return D{f, first, -2.0 * f * first};
+     },
+     series::tanh},
+    {"asinh",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(x * x + 1.0);
+       return D{std::asinh(x), first, -x * first * first * first};
+     },
+     series::asinh},
+    {"acosh",
+     [](double x) {
+       const double first = 1.0 / std::sqrt(x * x - 1.0);
+       return D{std::acosh(x), first, -x * first * first * first};
+     },
+     series::acosh},
+    {"atanh",
+     [](double x) {
+       const double first = 1.0 / (1.0 - x * x);
+       return D{std::atanh(x), first, 2.0 * x * first * first};
+     },
+     series::atanh},
+    {"log2",
+     [](double x) {
+       return D{std::log2(x), std::numbers::log2e / x, -std::numbers::log2e / (x * x)};
+     },
+     series::log2},
+    {"log10",
+     [](double x) {
+       return D{std::log10(x), std::numbers::log10e / x, -std::numbers::log10e / (x * x)};
+     },
+     series::log10},
+    {"log",
+     [](double x) {
+       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
+     },
+     series::log},
+    {"ln",
+     [](double x) {
+       return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
+     },
+     series::log},
+    {"exp",
+     [](double x) {
+       return D{std::exp(x), std::exp(x), std::exp(x)};
+     },
+     series::exp},
+    {"sqrt",
+     [](double x) {
+       const double f = std::sqrt(x);
+       return D{f, 0.5 / f, -0.25 / (f * x)};
+     },
+     series::sqrt},
+}};
+
+}  // namespace
+
+const std::array<FormulaFunction, 18>& formula_functions() { return functions; }
+
+}  // namespace rubato::numerics
