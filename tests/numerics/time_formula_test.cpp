@@ -1,11 +1,13 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/formula_slopes.hpp>
+#include <rubato/numerics/bound_formula.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,6 +48,71 @@ TEST(TimeFormula, SaysWhatAnExpressionSays) {
     for (const double t : {0.05, 0.25, 0.61, 1.3})
       EXPECT_NEAR(formula(t).value, expression(t), 1e-14 * (1.0 + std::abs(expression(t)))) << text << " at " << t;
   }
+}
+
+/// A random formula of t and tau, with numbers and all that formulas know.
+class RandomFormula {
+ public:
+  explicit RandomFormula(unsigned seed) : random_(seed) {}
+
+  std::string text(int depth) {
+    static const std::vector<std::string> leaves{"t",    "tau", "pi", "0.3", "0",   "1",   "2",   "0.5",
+                                                 "(-1)", "3",   "4",  ".25", "7.5", "1e3", "tau", "t"};
+    static const std::vector<std::string> operators{"+",  "-",  "*",  "/",  "^",  "<", ">",
+                                                    "<=", ">=", "==", "!=", "&&", "||"};
+    static const std::vector<std::string> functions{"sin",  "cos",  "tan",   "asin",  "acos",  "atan", "sinh",
+                                                    "cosh", "tanh", "asinh", "acosh", "atanh", "log2", "log10",
+                                                    "log",  "ln",   "exp",   "sqrt",  "sign",  "rint", "abs"};
+    static const std::vector<std::string> lists{"min", "max", "sum", "avg"};
+    if (depth == 0) return one_of(leaves);
+    const auto part = [&] { return text(depth - 1); };
+    switch (random_() % 8) {
+      case 0:
+        return one_of(functions) + "(" + part() + ")";
+      case 1:
+        return "(" + part() + ")";
+      case 2: {
+        const std::string negated = part();
+        return negated.front() == '-' ? negated : "-" + negated;  // two signs in a row are refused
+      }
+      case 3:
+        return part() + " ? " + part() + " : " + part();
+      case 4:
+        return one_of(lists) + "(" + part() + ", " + part() + ")";
+      case 5:
+        return "atan2(" + part() + ", " + part() + ")";
+      default:
+        return part() + one_of(operators) + part();
+    }
+  }
+
+ private:
+  const std::string& one_of(const std::vector<std::string>& words) { return words[random_() % words.size()]; }
+
+  std::mt19937 random_;
+};
+
+// Two engines read formulas: muParser for values, and TimeFormula for derivatives. muParser folded the constants of &&
+// and || as whole numbers: `0.3 || 0` was false. Round-off of different logarithms and powers is left.
+TEST(TimeFormula, SaysWhatAnExpressionSaysOfRandomFormulas) {
+  EXPECT_EQ(Expression("0.3 || 0 ? 1 : 0", {})(), 1.0);
+  EXPECT_EQ(Expression("0.3 && 0.2", {})(), 1.0);
+  EXPECT_EQ(BoundFormula("0.3 || 0 ? 1 : 0", {}, nullptr)(), 1.0);
+  RandomFormula random(11);
+  int compared = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const std::string text = random.text(1 + i % 4);
+    const Expression expression(text, parameters, true);
+    const TimeFormula formula(text, parameters);
+    for (const double t : {0.0, 0.3, -0.7, 2.5}) {
+      const double a = expression(t), b = formula(t).value;
+      if (std::isnan(a) && std::isnan(b)) continue;
+      ++compared;
+      EXPECT_TRUE(a == b || std::abs(a - b) <= 1e-12 * (std::abs(a) + std::abs(b)))
+          << text << " at " << t << ": " << a << ", " << b;
+    }
+  }
+  EXPECT_GT(compared, 15000);
 }
 
 // Central differences of a step h are off by h^2 f'''/6, and round-off by eps/h and 4 eps/h^2: 1e-8 and 1e-6 of values

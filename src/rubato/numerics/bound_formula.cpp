@@ -1,8 +1,5 @@
 #include <rubato/numerics/bound_formula.hpp>
-
-#include <muParser.h>
-
-#include <numbers>
+#include <rubato/numerics/mu_parser.hpp>
 
 namespace rubato::numerics {
 
@@ -14,8 +11,7 @@ BoundFormula::BoundFormula(const std::string& text, const Parameters& parameters
     : engine_(std::make_unique<Engine>()) {
   (void)Expression(text, parameters);  // says what is wrong in words of ours
   mu::Parser& parser = engine_->parser;
-  parser.ClearConst();
-  parser.DefineConst("pi", std::numbers::pi);
+  set_up(parser);
   // muParser keeps variables by pointer to non-const; a formula that assigns was refused above.
   for (std::size_t i = 0; i < parameters.size(); ++i)
     parser.DefineVar(parameters[i].first, const_cast<double*>(values + i));
@@ -32,8 +28,7 @@ double BoundFormula::operator()() const { return engine_->parser.Eval(); }
 std::vector<std::size_t> parameters_used(const std::string& text, const Parameters& parameters, bool of_time) {
   (void)Expression(text, parameters, of_time);
   mu::Parser parser;
-  parser.ClearConst();
-  parser.DefineConst("pi", std::numbers::pi);
+  set_up(parser);
   std::vector<double> values(parameters.size() + 1, 1.0);
   for (std::size_t i = 0; i < parameters.size(); ++i) parser.DefineVar(parameters[i].first, &values[i]);
   if (of_time) parser.DefineVar("t", &values.back());

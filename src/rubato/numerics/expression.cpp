@@ -1,11 +1,9 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/mu_parser.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
-#include <muParser.h>
-
 #include <cctype>
-#include <numbers>
 #include <optional>
 #include <regex>
 
@@ -53,8 +51,7 @@ bool is_after_number(const std::string& text, int place) {
 /// Throws InvalidInput where the text is no formula of the parameters and, unless it is null, of t.
 void prepare(mu::Parser& parser, const std::string& text, const Parameters& parameters, double* t) {
   try {
-    parser.ClearConst();
-    parser.DefineConst("pi", std::numbers::pi);
+    set_up(parser);
     for (const auto& [name, value] : parameters) parser.DefineConst(name, value);
     if (t) parser.DefineVar("t", t);
     parser.SetExpr(text);
