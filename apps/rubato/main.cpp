@@ -165,7 +165,7 @@ int main(int argc, char** argv) {
     app::tell(fault.what());
     return app::exit_wrong;
   } catch (const std::bad_alloc&) {
-    app::tell("error: out of memory; observe fewer coordinates, or take a smaller model");
+    app::tell("error: memory ran out; observe fewer coordinates, or take a smaller model");
     return app::exit_failed;
   } catch (const std::exception& fault) {
     app::tell(fmt::format("error: {}", fault.what()));

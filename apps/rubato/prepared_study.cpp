@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <new>
+#include <stdexcept>
 
 namespace rubato::app {
 namespace {
@@ -81,11 +83,27 @@ PreparedStudy prepare(const StudyOptions& options) {
   model::StudyDescription study = io::read_study(options.study, &files);
   const numerics::Parameters parameters = model::evaluate_parameters(study.parameters, overrides);
   const auto analyses = chosen(study, options.only);
-  PreparedStudy prepared{
-      study, files, overrides, parameters, analyses, {}, assembled(study, parameters), mechanism_of(study, parameters)};
-  for (const auto& analysis : analyses)
-    prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
-  return prepared;
+  std::string task = "to assemble the model";
+  try {
+    PreparedStudy prepared{study,
+                           files,
+                           overrides,
+                           parameters,
+                           analyses,
+                           {},
+                           assembled(study, parameters),
+                           mechanism_of(study, parameters)};
+    for (const auto& analysis : analyses) {
+      task = fmt::format("to check the analysis \"{}\"", analysis.name);
+      prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
+    }
+    return prepared;
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error(
+        fmt::format("{}: there is not enough memory {}; observe fewer coordinates, or take a "
+                    "smaller model",
+                    study.file, task));
+  }
 }
 
 }  // namespace rubato::app

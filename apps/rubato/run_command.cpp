@@ -12,6 +12,7 @@
 #include <rubato/io/tee_sink.hpp>
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
+#include <rubato/model/doubtful_values.hpp>
 #include <rubato/report/results_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
@@ -160,7 +161,7 @@ class Runner {
       report = analysis::run_analysis(
           task, {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
     } catch (const std::bad_alloc&) {
-      report = {RunStatus::failed, "out of memory; observe fewer coordinates, or take a smaller model", {}};
+      report = {RunStatus::failed, "memory ran out; observe fewer coordinates, or take a smaller model", {}};
     } catch (const InvalidInput& fault) {
       report = {RunStatus::failed, fault.where().file.empty() ? fault.message() : fault.what(), {}};
     } catch (const std::exception& fault) {
@@ -253,15 +254,22 @@ bool write_motion(const std::filesystem::path& folder) {
           "written");
     return true;
   } catch (const std::exception& fault) {
-    tell(fmt::format("error: the files for ParaView were not written: {}", fault.what()));
+    tell(fmt::format("error: the files for ParaView were not written: {}", reason_of(fault)));
     return false;
   }
+}
+
+/// Values of the model that are hardly meant.
+void tell_doubts(const PreparedStudy& study) {
+  for (const auto& [where, message] : model::doubtful_values(study.description.model, study.parameters))
+    tell(fmt::format("{}:{}:{}: warning: {}", where.file, where.line, where.column, message));
 }
 
 }  // namespace
 
 int run(const RunOptions& options) {
   const PreparedStudy study = prepare(options.study);
+  tell_doubts(study);
   require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
@@ -304,7 +312,7 @@ int run(const RunOptions& options) {
     for (const auto& journal : journals)
       if (journal && status == exit_done) journal->remove();
   } catch (const OutputError& fault) {
-    tell(fmt::format("error: {}", fault.what()));
+    tell(fmt::format("error: {}", reason_of(fault)));
     lock.reset();
     // HDF5 tries once more to write what it could not as the process ends, and crashes: leave without it.
     std::fflush(nullptr);
@@ -319,7 +327,7 @@ int run(const RunOptions& options) {
   try {
     report::write_report(folder / "results.nc", folder / "report.html");
   } catch (const std::exception& fault) {  // the results are safe; only their picture is missing
-    tell(fmt::format("error: the report was not written: {}", fault.what()));
+    tell(fmt::format("error: the report was not written: {}", reason_of(fault)));
     return status == exit_done ? exit_failed : status;
   }
   if (!options.quiet) fmt::print("{}\n", (folder / "report.html").string());
@@ -331,6 +339,7 @@ int check(const StudyOptions& options) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
   const PreparedStudy study = prepare(options);
+  tell_doubts(study);
   if (study.mechanism) {
     const analysis::MechanismSize size = analysis::size_of(*study.mechanism);
     fmt::print("{}\n  {}, {} ({} of drives, {} redundant), {} left, {}\n", study.description.title,

@@ -248,6 +248,21 @@ duration = 0.1
         self.assertIn("5 coordinates, 2 sliders", result.stdout)
         self.assertIn("transient, generalized_alpha, 12000 steps of 0.005 s to t = 60 s", result.stdout)
 
+    def test_values_that_no_material_has_are_told(self):
+        slider = '[[slider]]\nname = "s"\nbetween = ["mass", "ground"]\nstiffness = 1.0\nfriction_coefficient = 50\nnormal_load = 1.0\n'
+        study = self.write(LONG.replace("DURATION", "1") + slider)
+        told = (f'{study}:21:24: warning: slider "s": friction_coefficient is 50, and dry materials have 0.05 to 1.5; '
+                'is it in percent? (0.3 means 30 %)\n')
+        self.assertEqual(self.run_command("check", study).stderr, told)
+        self.assertIn(told, self.run_command("run", study).stderr)
+        frame = (EXAMPLES / "frame" / "study.toml").read_text()
+        soft = re.sub(r"young = [0-9.e]+", "young = 210.0", frame)
+        self.assertNotEqual(soft, frame)
+        self.assertRegex(self.run_command("check", self.write(soft)).stderr,
+                         'warning: material ".*": young is 210 Pa, softer than gelatine; steel has 2.1e11 Pa: is it in '
+                         'GPa or MPa[?]\n')
+        self.assertEqual(self.run_command("check", self.write(frame)).stderr, "")
+
     def test_check_tells_the_freedoms_that_joints_and_drives_leave(self):
         # A slider-crank of three bodies has nine coordinates and eight rows; a second guide repeats two of them.
         text = "".join(f"""

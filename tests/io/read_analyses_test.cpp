@@ -86,7 +86,12 @@ TEST(AnalysisError, NamesTheMethodAndWhatItTakes) {
   EXPECT_EQ(verdict_adding("method = { name = \"hht\", alpha = 0.1 }\n"),
             "study.toml:42:10: error: method \"hht\": alpha must lie in [-1/3, 0], got 0.1");
   EXPECT_EQ(verdict_adding("method = { name = \"newmark\", beta = 0.25 }\n"),
-            "study.toml:42:10: error: method \"newmark\" needs the parameter \"gamma\" in [1/2, 10]");
+            "study.toml:42:10: error: method \"newmark\" needs the parameter \"gamma\" in [1/2, 10]; write method = { "
+            "name = \"newmark\", beta = 0.25, gamma = 0.5 }");
+  EXPECT_EQ(
+      verdict_adding("method = \"newmark\"\n"),
+      "study.toml:42:10: error: method \"newmark\" needs the parameter \"beta\" in [0, 10]; write method = { name = "
+      "\"newmark\", beta = 0.25, gamma = 0.5 }");
   EXPECT_EQ(verdict_adding("method = { beta = 0.25 }\n"),
             "study.toml:42:10: error: analysis \"response\": method lacks the key \"name\"");
   EXPECT_EQ(

@@ -169,7 +169,9 @@ TEST(DistributedForceFile, IsReadAndPointsAtItsFaults) {
   EXPECT_EQ(
       with("on = \"column\"", "on = \"colum\""),
       "study.toml:44:6: error: a distributed force is on \"colum\", which is the name of no beam or truss; did you "
-      "mean \"column\"? (known: column)");
+      "mean \"column\"? (known: column, 2-tip, foot-tip)");
+  // A beam without a name is FIRST-SECOND.
+  EXPECT_EQ(with("on = \"column\"", "on = \"2-tip\""), "accepted");
   EXPECT_EQ(
       with("direction = [1.0, 0.0]", "direction = [1.0]"),
       "study.toml:44:6: error: the distributed force on \"column\": direction takes 2 numbers, as the positions of "

@@ -104,6 +104,37 @@ TEST(StudyFileError, IsSaidOfTextThatIsNoToml) {
   EXPECT_THAT(verdict("a = " + std::string(100'000, '[')), StartsWith("study.toml:1:"));
 }
 
+// What people write who know other formats.
+TEST(StudyFileError, TellsOfMissingQuotesDecimalCommasAndHugeNumbers) {
+  EXPECT_THAT(verdict_with("on = \"blade\"", "on = blade"),
+              EndsWith("; texts and formulas stand in quotes: \"blade\""));
+  EXPECT_THAT(verdict_with("amplitude = 20.0", "expression = sin(2*t)  # [N]"),
+              EndsWith("; texts and formulas stand in quotes: \"sin(2*t)\""));
+  EXPECT_THAT(verdict_with("mass = 1.0", "mass = 1,5"), EndsWith("; decimals are written with a point, 1.5"));
+  EXPECT_THAT(verdict_with("mass = 1.0", "mass = 1e400"), EndsWith("; numbers go up to 1.8e308"));
+}
+
+// TOML's trap: keys after a header belong to it.
+TEST(KeyError, TellsOfInlineTablesBelowAHeader) {
+  const std::string below =
+      "[damping]\nmodal_ratio = 0.02\ncoordinate = [{ name = \"m\", mass = 1.0 }]\n"
+      "spring = [{ between = [\"m\", \"ground\"], stiffness = 1.0 }]\n";
+  const std::string told =
+      " has no key \"coordinate\": in TOML the keys after a line in brackets belong to it, up to the next such line; "
+      "write \"coordinate = ...\" above the first of them, or under a line [[coordinate]]";
+  EXPECT_EQ(verdict(below), "study.toml:3:1: error: [damping]" + told);
+  EXPECT_EQ(verdict("[[analysis]]\nname = \"run\"\ntype = \"transient\"\nduration = 1.0\nstep = 0.1\n" +
+                    below.substr(below.find("coordinate"))),
+            "study.toml:6:1: error: analysis \"run\"" + told);
+}
+
+TEST(KeyError, QuotesTheBeginningOfALongText) {
+  const std::string long_text(1000000, 'x');
+  EXPECT_LT(verdict_with("mass = 1.0", "mass = \"" + long_text + "\"").size(), 500u);
+  EXPECT_LT(verdict_with("step = 0.005", "step = [\"" + long_text + "\"]").size(), 500u);
+  EXPECT_LT(verdict_with("[\"blade\", \"ground\"]", "[\"" + long_text + "\", \"ground\"]").size(), 7000u);
+}
+
 TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
   EXPECT_EQ(
       verdict_with("mass = 10.0", "mass = 10.0\npositon = 1.0"),

@@ -67,9 +67,47 @@ TEST(ExpressionFault, NamesAnUnknownNameItsPlaceAndTheNearest) {
 }
 
 TEST(ExpressionFault, CountsCharactersFromOneAndSaysTheEnd) {
-  EXPECT_EQ(fault_of("sin(2 N0)"), "in the expression \"sin(2 N0)\": unexpected value \"N0\" at character 7");
+  EXPECT_EQ(fault_of("sin(2 N0)"),
+            "in the expression \"sin(2 N0)\": unexpected value \"N0\" at character 7; a product is written with "
+            "\"*\"");
   EXPECT_EQ(fault_of("2 * (N0 + 1"), "in the expression \"2 * (N0 + 1\": missing parenthesis at its end");
   EXPECT_EQ(fault_of("2 *"), "in the expression \"2 *\": unexpected end of expression at its end");
+}
+
+// As other languages write it.
+TEST(ExpressionFault, SaysHowItIsWrittenHere) {
+  EXPECT_EQ(fault_of("1.1pi"),
+            "in the expression \"1.1pi\": unexpected value \"pi\" at character 4; a product is "
+            "written with \"*\"");
+  EXPECT_EQ(fault_of("t**2", true),
+            "in the expression \"t**2\": unexpected operator \"*\" at character 3; a power is "
+            "written \"a^b\"");
+  EXPECT_EQ(fault_of("2*PI"), "in the expression \"2*PI\": unknown name \"PI\" at character 3; did you mean \"pi\"?");
+  EXPECT_EQ(fault_of("2*Sin(N0)"),
+            "in the expression \"2*Sin(N0)\": unknown name \"Sin\" at character 3; did you mean "
+            "\"sin\"?");
+  EXPECT_EQ(
+      fault_of("if(t > 1, 2, 3)", true),
+      "in the expression \"if(t > 1, 2, 3)\": unknown name \"if\" at character 1; a choice is written \"condition ? "
+      "this : else that\"");
+  EXPECT_EQ(fault_of("pow(t, 2)", true),
+            "in the expression \"pow(t, 2)\": unknown name \"pow\" at character 1; a power is written \"a^b\"");
+  EXPECT_EQ(fault_of("floor(t)", true),
+            "in the expression \"floor(t)\": unknown name \"floor\" at character 1; write \"rint(a - 0.5)\"");
+  EXPECT_EQ(fault_of("1e400"),
+            "in the expression \"1e400\": unknown name \"1e400\" at character 1; as a number it is "
+            "beyond what can be computed with (1.8e308)");
+  // What is near to a name of the study is that.
+  EXPECT_NE(fault_of("Omeg").find("did you mean \"Omega\"?"), std::string::npos);
+}
+
+TEST(ExpressionFault, QuotesTheBeginningOfALongFormula) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "N0+";
+  EXPECT_EQ(fault_of(text + "M0"), "in the expression \"" + text.substr(0, 80) +
+                                       "... (3002 characters)\": unknown name \"M0\" at character 3001; did you mean "
+                                       "\"N0\"? (known: pi, N0, Omega)");
+  EXPECT_LT(fault_of(std::string(1000000, '(')).size(), 400u);
 }
 
 // muParser alone would take the last of a list: 1,5 would be 5.

@@ -1,6 +1,6 @@
 #include <rubato/core/error.hpp>
-#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <gtest/gtest.h>

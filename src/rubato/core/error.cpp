@@ -35,10 +35,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// A message that quotes a text of any length, without its middle: what is wrong stands at the begin, the remedy at the
+/// end.
+std::string shortened(const std::string& message) {
+  constexpr std::size_t longest = 6000, kept = 2000;
+  if (message.size() <= longest) return message;
+  const auto is_inside = [&](std::size_t i) { return (static_cast<unsigned char>(message[i]) & 0xC0u) == 0x80u; };
+  std::size_t end = kept, begin = message.size() - kept;
+  while (end > 0 && is_inside(end)) --end;
+  while (begin < message.size() && is_inside(begin)) ++begin;
+  return fmt::format("{} ... ({} characters left out) ... {}", message.substr(0, end), begin - end,
+                     message.substr(begin));
+}
+
 }  // namespace
 
 InvalidInput::InvalidInput(const Location& where, const std::string& message)
-    : std::runtime_error(place(where) + "error: " + message), where_(where), message_(message) {}
+    : std::runtime_error(place(where) + "error: " + shortened(message)), where_(where), message_(shortened(message)) {}
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known) {
   std::string best;

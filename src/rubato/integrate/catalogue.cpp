@@ -200,6 +200,17 @@ const Entry& find_entry(const std::string& name) {
                                  nearest.empty() ? ";" : fmt::format("; did you mean \"{}\"?", nearest)));
 }
 
+/// With its parameters, as a study has it; numbers of those without a default are an example.
+std::string spelling_of(const MethodInfo& info) {
+  std::string text = fmt::format("{{ name = \"{}\"", info.name);
+  for (const MethodParameter& parameter : info.parameters) {
+    const double example = parameter.name == "beta" ? 0.25 : 0.5;  // average acceleration
+    const double value = std::isnan(parameter.default_value) ? example : parameter.default_value;
+    text += fmt::format(", {} = {}", parameter.name, value);
+  }
+  return text + " }";
+}
+
 struct Range {
   double low, high;
 };
@@ -245,8 +256,8 @@ Method make_method(const std::string& name, const std::vector<std::pair<std::str
     const bool given = std::any_of(parameters.begin(), parameters.end(),
                                    [&](const auto& pair) { return pair.first == parameter.name; });
     if (!given && std::isnan(value))
-      throw InvalidInput(
-          fmt::format("method \"{}\" needs the parameter \"{}\" in {}", name, parameter.name, parameter.range));
+      throw InvalidInput(fmt::format("method \"{}\" needs the parameter \"{}\" in {}; write method = {}", name,
+                                     parameter.name, parameter.range, spelling_of(entry.info)));
     const Range range = range_of(name, parameter.name);
     if (!(value >= range.low && value <= range.high))
       throw InvalidInput(

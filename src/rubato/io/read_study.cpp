@@ -1,3 +1,4 @@
+#include <rubato/core/excerpt.hpp>
 #include <rubato/io/read_parts.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/io/toml_limits.hpp>
@@ -23,10 +24,36 @@ void require_text(const std::string& text, const std::string& name) {
 }
 
 // toml++ reports an unclosed quote as the line break that it runs into.
-std::string syntax_hint(std::string_view description) {
-  return description.find("unescaped control characters") == std::string_view::npos
-             ? ""
-             : " (is the closing quote missing?)";
+/// What follows a place in the text on its line. Lines and columns count from 1, columns in characters.
+std::string_view rest_of_line(std::string_view text, const toml::source_position& place) {
+  for (toml::source_index line = 1; line < place.line; ++line) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find_first_of("\r\n"));
+  for (toml::source_index column = 1; column < place.column && !text.empty(); ++column) {
+    text.remove_prefix(1);
+    while (!text.empty() && (static_cast<unsigned char>(text.front()) & 0xC0u) == 0x80u) text.remove_prefix(1);
+  }
+  return text;
+}
+
+/// What is probably meant where a text is no TOML; or nothing.
+std::string syntax_hint(std::string_view description, std::string_view text, const toml::source_position& place) {
+  const auto tells = [&](std::string_view words) { return description.find(words) != std::string_view::npos; };
+  if (tells("unescaped control characters")) return " (is the closing quote missing?)";
+  const std::string_view rest = rest_of_line(text, place);
+  const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; };
+  if (tells("could not be interpreted as a value")) return "; numbers go up to 1.8e308";
+  if (tells("could not determine value type") && !rest.empty() && is_letter(rest.front())) {
+    const std::string_view word = rest.substr(0, rest.find_first_of(",]}#"));
+    const std::string_view trimmed = word.substr(0, word.find_last_not_of(" \t") + 1);
+    return fmt::format("; texts and formulas stand in quotes: \"{}\"", excerpt(trimmed));
+  }
+  if (tells("saw ','") && rest.size() > 1 && std::isdigit(static_cast<unsigned char>(rest[1])))
+    return "; decimals are written with a point, 1.5";
+  return "";
 }
 
 /// Where [matrices] names its coordinates, their numbers serve in `observe` too.
@@ -123,8 +150,9 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
     table = toml::parse(text, name);
   } catch (const toml::parse_error& fault) {
     const auto& begin = fault.source().begin;
-    throw InvalidInput({name, static_cast<int>(begin.line), static_cast<int>(begin.column)},
-                       fmt::format("this is no TOML: {}{}", fault.description(), syntax_hint(fault.description())));
+    throw InvalidInput(
+        {name, static_cast<int>(begin.line), static_cast<int>(begin.column)},
+        fmt::format("this is no TOML: {}{}", fault.description(), syntax_hint(fault.description(), text, begin)));
   }
   TomlReader root(table, "the study", name);
   model::StudyDescription study;

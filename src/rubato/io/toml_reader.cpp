@@ -1,3 +1,4 @@
+#include <rubato/core/excerpt.hpp>
 #include <rubato/io/toml_reader.hpp>
 
 #include <fmt/format.h>
@@ -9,7 +10,7 @@ namespace rubato::io {
 namespace {
 
 std::string value_found(const toml::node& node) {
-  if (const auto* text = node.as_string()) return fmt::format("the text \"{}\"", text->get());
+  if (const auto* text = node.as_string()) return fmt::format("the text \"{}\"", excerpt(text->get()));
   if (const auto* number = node.as_integer()) return fmt::format("the number {}", number->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("the number {}", number->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
@@ -24,6 +25,17 @@ std::string whole_suggestion(const std::string& name, const std::vector<std::str
   const std::string nearest = nearest_name(name, known);
   if (nearest.empty()) return fmt::format("; known: {}", fmt::join(known, ", "));
   return fmt::format("; did you mean \"{}\"? (known: {})", nearest, fmt::join(known, ", "));
+}
+
+/// Whether the study itself has a key of this name, with such a value: a table, or a list of tables.
+bool is_part_of_the_study(const std::string& name, const toml::node& value) {
+  static const std::vector<std::string> keys{
+      "parameters",  "coordinate", "matrices",          "spring",  "damper", "damping",  "slider",      "stop", "force",
+      "base_motion", "analysis",   "distributed_force", "node",    "nodes",  "material", "section",     "beam", "beams",
+      "truss",       "mass",       "support",           "gravity", "body",   "joint",    "displacement"};
+  const auto* list = value.as_array();
+  const bool is_list = list && !list->empty() && list->front().is_table();
+  return (value.is_table() || is_list) && std::find(keys.begin(), keys.end(), name) != keys.end();
 }
 
 }  // namespace
@@ -230,6 +242,13 @@ void TomlReader::finish() const {
     std::vector<std::string> all = known_;
     for (const auto& [other, what] : elsewhere_) all.push_back(other);
     const auto found = elsewhere_.find(nearest_name(name, all));
+    if (found == elsewhere_.end() && !table_.is_inline() && is_part_of_the_study(name, value))
+      throw InvalidInput(
+          location(key),
+          fmt::format(
+              "{0} has no key \"{1}\": in TOML the keys after a line in brackets belong to it, up to the next such "
+              "line; write \"{1} = ...\" above the first of them, or under a line {2}",
+              what_, name, value.is_table() ? "[" + name + "]" : "[[" + name + "]]"));
     throw InvalidInput(location(key),
                        fmt::format("{} has no key \"{}\"{}", what_, name,
                                    found != elsewhere_.end() ? "; " + found->second : whole_suggestion(name, known_)));

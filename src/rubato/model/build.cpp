@@ -310,8 +310,16 @@ class Builder {
 
   void take_distributed_force(const DistributedForceDescription& description) {
     const std::string part = fmt::format("the distributed force on \"{}\"", description.on);
-    const auto found =
-        std::find_if(lines_.begin(), lines_.end(), [&](const NamedLine& line) { return line.name == description.on; });
+    const auto is_meant = [&](const NamedLine& line) { return line.name == description.on; };
+    auto found = std::find_if(lines_.begin(), lines_.end(),
+                              [&](const NamedLine& line) { return is_meant(line) && line.has_own_name; });
+    if (found == lines_.end()) {
+      found = std::find_if(lines_.begin(), lines_.end(), is_meant);
+      if (found != lines_.end() && std::find_if(std::next(found), lines_.end(), is_meant) != lines_.end())
+        throw InvalidInput(description.where, fmt::format("a distributed force is on \"{}\", which a beam and a truss "
+                                                          "are; give the one that is meant a name",
+                                                          description.on));
+    }
     if (found == lines_.end()) {
       std::vector<std::string> names;
       for (const NamedLine& line : lines_) names.push_back(line.name);

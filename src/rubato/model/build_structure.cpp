@@ -49,9 +49,9 @@ class StructureBuilder {
   }
 
   void add_name(const LineDescription& line, std::size_t count) {
-    if (line.name.empty()) return;
-    lines_.add(line.name, line.where, 0);
-    built_.lines.push_back({line.name, built_.structure.elements.size(), count});
+    if (!line.name.empty()) lines_.add(line.name, line.where, 0);
+    const std::string name = line.name.empty() ? line.nodes[0] + "-" + line.nodes[1] : line.name;
+    built_.lines.push_back({name, built_.structure.elements.size(), count, !line.name.empty()});
   }
 
   /// Two lines of a kind between the same nodes double their stiffness: who means it names one.

@@ -22,14 +22,15 @@ struct NodeCoordinate {
 struct NamedLine {
   std::string name;
   std::size_t first = 0, count = 0;
+  bool has_own_name = true;  ///< else it is FIRST-SECOND
 };
 
 struct BuiltStructure {
   Structure structure;
   std::vector<NodeCoordinate> coordinates;  ///< in the order of the nodes; the first is coordinate `offset`
   std::unordered_set<std::string> fixed;    ///< names of those held by supports
-  std::vector<NamedLine> lines;
-  std::vector<NamedLine> beams;  ///< all of them, FIRST-SECOND where they have no name
+  std::vector<NamedLine> lines;             ///< beams and trusses
+  std::vector<NamedLine> beams;             ///< all of them, FIRST-SECOND where they have no name
 };
 
 /// Evaluates and checks nodes, elements, masses and supports. A degree of freedom exists where something gives it an

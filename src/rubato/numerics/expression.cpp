@@ -1,8 +1,10 @@
 #include <rubato/core/error.hpp>
+#include <rubato/core/excerpt.hpp>
 #include <rubato/numerics/expression.hpp>
 #include <rubato/numerics/mu_parser.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
+#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <regex>
@@ -18,11 +20,11 @@ void require_one_value(const std::string& text, const mu::Parser& parser) {
     const bool compares = (i + 1 < text.size() && text[i + 1] == '=') ||
                           (i > 0 && std::string("=<>!").find(text[i - 1]) != std::string::npos);
     if (!compares)
-      throw InvalidInput("in the expression \"" + text + "\": \"=\" at character " + std::to_string(i + 1) +
+      throw InvalidInput("in the expression \"" + excerpt(text) + "\": \"=\" at character " + std::to_string(i + 1) +
                          " assigns, which a formula cannot; a comparison is written \"==\"");
   }
   if (parser.GetNumResults() > 1)
-    throw InvalidInput("in the expression \"" + text + "\": " + std::to_string(parser.GetNumResults()) +
+    throw InvalidInput("in the expression \"" + excerpt(text) + "\": " + std::to_string(parser.GetNumResults()) +
                        " values with commas between them; give one, with a point for its decimals");
 }
 
@@ -48,6 +50,39 @@ bool is_after_number(const std::string& text, int place) {
   return begin <= before && (text[begin] == '.' || std::isdigit(static_cast<unsigned char>(text[begin])));
 }
 
+/// What is written otherwise here than elsewhere: how, for a name that is not known; or nothing.
+std::string other_spelling(const std::string& name, bool is_call) {
+  const auto in_lower_case = [](std::string word) {
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+    return word;
+  };
+  const std::string word = in_lower_case(name);
+  // "1e400" is no number to muParser, and then a name.
+  if (std::isdigit(static_cast<unsigned char>(name.front())))
+    return "; as a number it is beyond what can be computed with (1.8e308)";
+  if (word == "if") return "; a choice is written \"condition ? this : else that\"";
+  if (word == "pow" || word == "power") return "; a power is written \"a^b\"";
+  if (word == "and") return "; write \"a && b\"";
+  if (word == "or") return "; write \"a || b\"";
+  if (word == "not") return "; write \"a == 0\"";
+  if (word == "e") return "; Euler's number is \"exp(1)\"";
+  if (word == "floor") return "; write \"rint(a - 0.5)\"";
+  if (word == "ceil") return "; write \"-rint(-a - 0.5)\"";
+  if (word == "heaviside" || word == "step")
+    return "; a step is written \"t > 1\", which is 1 where it is true and 0 elsewhere";
+  if (word != name && (word == "pi" || (is_call && is_function(word)))) return "; did you mean \"" + word + "\"?";
+  return "";
+}
+
+/// How what stands at a place is written here; or nothing.
+std::string syntax_hint(const std::string& text, int place, const std::string& token) {
+  if (place < 0 || static_cast<std::size_t>(place) >= text.size()) return "";
+  const auto at = static_cast<std::size_t>(place);
+  if (token == "*" && at > 0 && text[at - 1] == '*') return "; a power is written \"a^b\"";
+  if (is_after_number(text, place)) return "; a product is written with \"*\"";
+  return "";
+}
+
 /// Throws InvalidInput where the text is no formula of the parameters and, unless it is null, of t.
 void prepare(mu::Parser& parser, const std::string& text, const Parameters& parameters, double* t) {
   try {
@@ -58,19 +93,24 @@ void prepare(mu::Parser& parser, const std::string& text, const Parameters& para
     (void)parser.Eval();
     require_one_value(text, parser);
   } catch (const mu::Parser::exception_type& fault) {
-    std::string message = "in the expression \"" + text + "\": ";
+    std::string message = "in the expression \"" + excerpt(text) + "\": ";
     const bool at_end = fault.GetPos() < 0 || static_cast<std::size_t>(fault.GetPos()) >= text.size();
     const std::string where = at_end ? " at its end" : " at character " + std::to_string(fault.GetPos() + 1);
     if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
       std::vector<std::string> known{"pi"};
       if (t) known.push_back("t");
       for (const auto& parameter : parameters) known.push_back(parameter.first);
-      message += "unknown name \"" + fault.GetToken() + "\"" + where;
+      message += "unknown name \"" + excerpt(fault.GetToken()) + "\"" + where;
+      const std::size_t end = at_end ? text.size() : static_cast<std::size_t>(fault.GetPos()) + fault.GetToken().size();
+      const std::size_t next = text.find_first_not_of(" \t", end);
+      const std::string other = other_spelling(fault.GetToken(), next != std::string::npos && text[next] == '(');
       message += is_after_number(text, fault.GetPos())
                      ? "; units are implied (m, kg, s, N, rad): write the number alone"
-                     : suggestion(fault.GetToken(), known);
+                 : other.empty() || !nearest_name(fault.GetToken(), known).empty() ? suggestion(fault.GetToken(), known)
+                                                                                   : other;
     } else {
-      message += without_position(fault.GetMsg()) + where;
+      message +=
+          excerpt(without_position(fault.GetMsg())) + where + syntax_hint(text, fault.GetPos(), fault.GetToken());
     }
     throw InvalidInput(message);
   }

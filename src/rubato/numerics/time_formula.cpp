@@ -1,6 +1,7 @@
 #include <rubato/core/error.hpp>
-#include <rubato/numerics/formula_slopes.hpp>
+#include <rubato/core/excerpt.hpp>
 #include <rubato/numerics/formula_functions.hpp>
+#include <rubato/numerics/formula_slopes.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
@@ -111,7 +112,7 @@ class TimeFormulaParser {
 
  private:
   [[noreturn]] void refuse() const {
-    throw InvalidInput("the derivative of \"" + text_ + "\" with respect to t is not known from character " +
+    throw InvalidInput("the derivative of \"" + excerpt(text_) + "\" with respect to t is not known from character " +
                        std::to_string(at_ + 1) + " on; give the values in a table");
   }
   int add(Kind kind, int first = -1, int second = -1, int third = -1) {
