@@ -251,7 +251,7 @@ duration = 0.1
     def test_values_that_no_material_has_are_told(self):
         slider = '[[slider]]\nname = "s"\nbetween = ["mass", "ground"]\nstiffness = 1.0\nfriction_coefficient = 50\nnormal_load = 1.0\n'
         study = self.write(LONG.replace("DURATION", "1") + slider)
-        told = (f'{study}:21:24: warning: slider "s": friction_coefficient is 50, and dry materials have 0.05 to 1.5; '
+        told = (f'{study}:22:24: warning: slider "s": friction_coefficient is 50, and dry materials have 0.05 to 1.5; '
                 'is it in percent? (0.3 means 30 %)\n')
         self.assertEqual(self.run_command("check", study).stderr, told)
         self.assertIn(told, self.run_command("run", study).stderr)
