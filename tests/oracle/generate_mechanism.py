@@ -224,8 +224,12 @@ class Generator:
     # ---- joints -----------------------------------------------------------------------------------------------------
     def joint(self, kind, first, second, at=None, to=None, plain=False, axis=None):
         L, M, T, F = self.L, self.Mass, self.T, self.F
-        name = f"j{len(self.tables['joint']) + 1}" if self.chance(0.8) else f"joint {len(self.tables['joint']) + 1}"
+        number_here = len(self.tables["joint"]) + 1
+        name = f"j{number_here}" if self.chance(0.8) else f"joint {number_here}"
         table = {"name": name, "type": kind, "between": [first, second]}
+        if self.chance(0.1):
+            name = f"joint{number_here}"     # what it is called without a name
+            del table["name"]
         if at is not None:
             table["at"] = self.vector(at, L)
         if to is not None:
@@ -288,7 +292,7 @@ class Generator:
             t = f"(t/{number(T)})"
             formulas = [f"-{a}*{x}^3", f"-{a}*tanh(3*{v})", f"{a}*sin(3*{t}) - {a}*{v}", f"-{a}*{v}*abs({v})",
                         f"t < {number(0.5 * self.duration * T)} ? {a} : -{a}*{x}", f"{a}*cos(2*{x})", f"{a}*(1 - 0.5*{v})",
-                        f"-{a}*max(0, {x})", f"{a}*exp(-{x}^2)*{t}"]
+                        f"-{a}*max(0, {x} - 0.03)", f"{a}*exp(-{x}^2)*{t}"]
             if kind == "strut":
                 formulas += [f"{a}/(0.3 + ({way}/{number(measure)})^2)"]
             table[key] = self.pick(*formulas)
@@ -302,7 +306,7 @@ class Generator:
             rows = [(a * measure, self.uniform(-1, 1) * unit) for a in x]
             head = "angle [rad],moment [N m]" if turning else "length [m],force [N]"
             table[key] = {"table": self.table_file(head, rows), "beyond": self.pick("zero", "hold")}
-        if self.lock_wanted and self.chance(0.5) and "force" not in table and "moment" not in table:
+        if self.lock_wanted and self.chance(0.5) and (self.chance(0.4) or not {"force", "moment"} & set(table)):
             self.lock_wanted = False
             side = self.pick(-1.0, 1.0)
             at = here + side * self.uniform(0.05, 0.4) * (here if kind == "strut" else 1.0)
@@ -400,6 +404,8 @@ class Generator:
         names = ["ground"]
         for k in range(n):
             names.append(self.node(inertia=self.chance(0.3)))
+            if self.chance(0.15):
+                self.tables["support"].append({"node": names[-1], "fix": [self.pick("x", "y")]})
         for k in range(1, n + 1):
             for _ in range(int(self.rng.integers(1, 3))):
                 other = names[int(self.rng.integers(0, k))]
@@ -455,6 +461,9 @@ class Generator:
         if how == "clamped":
             self.tables["support"].append({"node": first, "fix": ["x", "y", "z", "rx", "ry", "rz"] if self.space else ["x", "y", "rz"]})
             names.remove(first)
+        elif how == "hinged" and self.chance(0.5):
+            self.tables["support"].append({"node": first, "fix": ["x", "y", "z"] if self.space else ["x", "y"]})
+            names.remove(first)
         elif how == "hinged":
             self.joint(self.pick("revolute", "spherical" if self.space else "revolute"), "ground", first)
         elif how == "body":
@@ -478,7 +487,7 @@ class Generator:
             if turns:
                 letters += ["rx", "ry", "rz"] if self.space else ["rz"]
             letter = self.pick(*letters)
-            if any(s["node"] == name for s in self.tables["support"]):
+            if any(s["node"] == name and (letter in s["fix"] or len(s["fix"]) > 3) for s in self.tables["support"]):
                 continue
             moment = letter.startswith("r")
             table = {"on": f"{name}.{letter}", **self.load(self.uniform(0.3, 3) * self.F * (self.L if moment else 1), "N m" if moment else "N")}
@@ -536,7 +545,19 @@ class Generator:
             auto["section_forces"] = True
         if self.chance(0.15):
             auto["energy"] = False
+        if self.chance(0.15):
+            kept = [f"{n}.{'xy'[int(self.rng.integers(2))]}" for n, _, _ in self.parts]
+            auto["observe"] = [k for k in kept if not any(s["node"] + "." in k for s in self.tables["support"])] or ["j1"]
+            if auto["observe"] == ["j1"]:
+                del auto["observe"]
         out.append(auto)
+        if self.chance(0.1):
+            out.append({"name": "watched", "type": "transient", "duration": duration, "output": {"interval": duration / 20},
+                        "step": {"tolerance": 1e-4, "controller": "fixed", "first": duration / 1000}})
+        if self.chance(0.2):
+            out.append({"name": "reached", "type": "modes", "about": {"analysis": "auto"}})
+            if self.chance(0.5):
+                out[-1]["about"]["time"] = 0.6 * duration
         if self.chance(0.6):
             n = 400
             equal = self.pick("generalized_alpha", {"name": "hht", "alpha": self.uniform(-0.3, -0.05)}, {"name": "newmark", "beta": 0.3025, "gamma": 0.6},

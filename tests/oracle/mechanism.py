@@ -345,7 +345,7 @@ class Mechanism:
     def _read_joint(self, table):
         a, b = (self.part(n) for n in table["between"])
         kind = table["type"]
-        j = Joint(table, table["name"], kind, a, b)
+        j = Joint(table, table.get("name", f"joint{len(self.joints) + 1}"), kind, a, b)
         carrier = lambda p: self.start_r[p] if p != GROUND and not self.is_body[p] else None
         at = self.point(table["at"]) if "at" in table else None
         to = self.point(table["to"]) if "to" in table else None

@@ -30,6 +30,10 @@ class Dry:
         self.going = None             # None: sticks; else the direction in which it slides
         self.resting = False          # a rigid lock holds its joint
 
+    def limit(self, mu):
+        """mu (preload + N) with the multipliers of this instant."""
+        return self.mu * (self.preload + (np.linalg.norm(mu[self.rows]) if self.rows else 0.0))
+
 
 class Lock:
     def __init__(self, joint, side):
@@ -379,14 +383,23 @@ class March:
         return state
 
     def project_velocities(self, state, t):
-        kin = self.model.scalars(state)
+        return self.impulse(state, t)[0]
+
+    def impulse(self, state, t):
+        """The state with velocities that the rows allow, and the work of the drives' impulses: each times the mean of its rate."""
+        m = self.model
+        kin = m.scalars(state)
         G, _, rate, _ = self.rows(state, t, kin)
         if len(G) == 0:
-            return state
-        solve = self._through(G)
+            return state, 0.0
+        impulses = -self._through(G)(rate)
         out = state.copy()
-        out.u = state.u - self.Linv.T @ (self.Linv @ (G.T @ solve(rate)))
-        return out
+        out.u = state.u + self.Linv.T @ (self.Linv @ (G.T @ impulses))
+        work = 0.0
+        for k, j in enumerate(self.drives):
+            line = G[len(m.row_map) + k]
+            work += impulses[len(m.row_map) + k] * (line @ state.u + line @ out.u) / 2
+        return out, work
 
     # ---- the march --------------------------------------------------------------------------------------------------
     def begin(self, state=None):
@@ -402,9 +415,24 @@ class March:
         here = m.way_map @ m.scalars(state)[0] + m.way_constant
         if not self.locks:
             self.locks = [Lock(j, math.copysign(1.0, j.lock["at"] - here[j.way])) for j in m.joints if j.lock is not None]
+        self._refuse_immobile(state)
         for d in self.dry:
             d.resting = False
         return state
+
+    def _refuse_immobile(self, state):
+        """What a dry joint carries that the other joints leave no motion is not determined."""
+        kin = self.model.scalars(state)
+        G = self.rows(state, 0.0, kin)[0]
+        if not self.dry or len(G) == 0:
+            return
+        basis = np.linalg.svd(self.Linv @ G.T, full_matrices=False)
+        span = basis[0][:, basis[1] > 1e-9 * basis[1][0]]
+        for d in self.dry:
+            for line in d.maps @ kin[1]:
+                seen = self.Linv @ line
+                if np.linalg.norm(seen - span @ (span.T @ seen)) < 1e-6 * np.linalg.norm(seen):
+                    raise Refused("a dry joint that the others leave no motion")
 
     def breaks(self, duration):
         m = self.model
@@ -441,16 +469,15 @@ class March:
         times = list(times)
 
         def write(state, t, works):
-            out.append(columns(self, state, t, works) if columns else (t, state))
+            out.append(columns(self, state, t, works) if columns else (t, state.copy()))
 
         for mark in marks:
             self.window = (t, mark)
             if t > 0:
-                before = self.kinetic(state)
                 u0 = state.u
-                state = self.project_velocities(state, t)
+                state, work = self.impulse(state, t)
                 if np.linalg.norm(state.u - u0) > 1e-12 * self.rates_scale:
-                    works = self._impulse_of_drives(u0, state, t, works)
+                    works = works + np.array([0.0, 0.0, 0.0, work])
                     self.settle_by_rates(state)
                 state = self.settle(state, t)
             while t < mark:
@@ -487,7 +514,9 @@ class March:
                     s, works = self.unpack(dense(t))
                     state = self.project(s.copy(), t, tries=3)
                     works = works.copy()
+                    self.driven = 0.0
                     state = self.change(state, t, found[1])
+                    works[3] += self.driven
                     if len(self.events) > 400:
                         raise Refused("too many events")
                 else:
@@ -498,9 +527,6 @@ class March:
             write(state, times[next_time], works)
             next_time += 1
         return out
-
-    def _impulse_of_drives(self, u0, state, t, works):
-        return works
 
     def _rate_scale(self, state, duration):
         return max(np.linalg.norm(state.u), 1e-3 * self.box / duration)
@@ -554,8 +580,7 @@ class March:
             if d.going is None:
                 hold = mu[at : at + len(d.maps)]
                 at += len(d.maps)
-                N = np.linalg.norm(mu[d.rows]) if d.rows else 0.0
-                out.append((("slips", d), d.mu * (d.preload + N) - np.linalg.norm(hold)))
+                out.append((("slips", d), d.limit(mu) - np.linalg.norm(hold)))
             else:
                 slip = d.maps @ kin[2]
                 out.append((("stops", d), float(d.going @ slip)))
@@ -604,8 +629,9 @@ class March:
                     if d.going is None:
                         d.going = np.zeros(len(d.maps))
                 before = self.kinetic(state)
-                state = self.project(state, t)
-                self.lost += before - self.kinetic(state)
+                state, work = self.impulse(self.project(state, t, velocities=False), t)
+                self.lost += before - self.kinetic(state) + work
+                self.driven += work
                 for d, going in kept:
                     d.going = going
                 self.settle_by_rates(state)
@@ -714,10 +740,8 @@ class March:
             if d.going is None:
                 hold = mu[at : at + len(d.maps)]
                 at += len(d.maps)
-                if d in rest:
-                    N = np.linalg.norm(mu[d.rows]) if d.rows else 0.0
-                    if np.linalg.norm(hold) > d.mu * (d.preload + N) * (1 - 1e-12):
-                        return False
+                if d in rest and np.linalg.norm(hold) > d.limit(mu) * (1 - 1e-12):
+                    return False
             elif d in rest:
                 gather = d.maps @ (kin[1] @ a + kin[3])
                 if d.going @ gather <= 0:

@@ -115,6 +115,10 @@ def equilibrium(march, velocities=False, state=None, t=0.0):
         _engage(march, state)
     else:
         raise Refused("no equilibrium was found")
+    _, K, _, Z, _ = modes_about(march, state)
+    stiff = np.abs(np.linalg.eigvals(Z.T @ K @ Z))
+    if len(stiff) and stiff.min() < 1e-9 * stiff.max():
+        raise Refused("an equilibrium that some motion does not leave")
     for d in march.dry:
         d.resting = False
         d.place = d.maps @ m.scalars(state)[0]
