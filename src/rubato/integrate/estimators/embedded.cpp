@@ -39,24 +39,26 @@ class EmbeddedEstimator : public Estimator {
     rate_ = space_->squared(change_) / (h * h);
     change_ = to.v - from.v;
     changed_ = space_->squared(change_);
+    memory_ = scales_.memory_of(change_, changed_, h);
     differ(from, to, h);
     const double now =
         scales_.relative(space_->squared(dq_), space_->squared(dv_), to, space_->touches(from) || space_->touches(to)) *
-        factor(h) / tolerance_;
+        factor(h, memory_) / tolerance_;
     const double power = std::pow(h, exponent());
     density_now_ = std::fmax(now / power, density_ * std::exp(-decay_ * scales_.frequency() * h));
     return std::isfinite(now) ? density_now_ * power : now;
   }
   void accept(const system::State& to) override {
     density_ = density_now_;
-    scales_.accept(change_, changed_, rate_, changed_ / (h_ * h_), to, h_);
+    scales_.accept(rate_, changed_ / (h_ * h_), to, h_);
   }
   void forget() override { density_ = 0.0; }
 
  protected:
   virtual void differ(const system::State& from, const system::State& to, double h) = 0;
   /// What turns the difference into the error.
-  virtual double factor(double h) const = 0;
+  /// @param memory  over which errors add up [s]
+  virtual double factor(double h, double memory) const = 0;
 
   double tolerance_;
   std::unique_ptr<ErrorSpace> space_;
@@ -71,7 +73,7 @@ class EmbeddedEstimator : public Estimator {
 
  private:
   Vector change_;  // of the velocity
-  double h_ = 0.0, rate_ = 0.0, changed_ = 0.0;
+  double h_ = 0.0, rate_ = 0.0, changed_ = 0.0, memory_ = 0.0;
 };
 
 /// Coefficients of z^k in the polynomial that a tableau makes of y' = z y/h with given weights.
@@ -110,14 +112,17 @@ class PairEstimator final : public EmbeddedEstimator {
   int exponent() const override { return order_; }
   double first_step() const override {
     if (!(scales_.third_derivative() > 0.0)) return std::numeric_limits<double>::infinity();
-    return std::pow(0.5 * tolerance_ / (factor(0.0) * difference_), 1.0 / order_) / scales_.frequency();
+    return std::pow(0.5 * tolerance_ / (factor(0.0, scales_.memory()) * difference_), 1.0 / order_) /
+           scales_.frequency();
   }
 
  private:
   void differ(const system::State&, const system::State&, double) override {
     (void)stepper_.embedded_difference(dq_, dv_);
   }
-  double factor(double) const override { return std::fmax(1.0, calibration_ * scales_.frequency() * scales_.memory()); }
+  double factor(double, double memory) const override {
+    return std::fmax(1.0, calibration_ * scales_.frequency() * memory);
+  }
 
   int order_;
   const Stepper& stepper_;
@@ -155,7 +160,7 @@ class WilsonEstimator final : public EmbeddedEstimator {
     dq_ = to.q - other_.q;
     dv_ = to.v - other_.v;
   }
-  double factor(double h) const override { return calibration_ * scales_.memory() / h; }
+  double factor(double h, double memory) const override { return calibration_ * memory / h; }
 
   std::unique_ptr<Stepper> linear_;
   system::State other_;

@@ -5,6 +5,11 @@
 #include <numbers>
 
 namespace rubato::integrate {
+namespace {
+
+constexpr long stride = 4;  // steps between looks at what costs products with matrices
+
+}  // namespace
 
 ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
     : space_(space),
@@ -16,6 +21,7 @@ ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
 void ErrorScales::start(const system::State& state) {
   y_ = rate_ = 0.0;
   steps_ = 0;
+  remembered_ = measured_ = 0.0;
   expect(state);
 }
 
@@ -40,8 +46,16 @@ double ErrorScales::speed_frequency() const {
 }
 
 double ErrorScales::memory() const {
-  const double forgotten = std::max(0.0, damping_) * duration_;
-  return forgotten > 1e-8 ? duration_ * -std::expm1(-forgotten) / forgotten : duration_;
+  return measured_ > 0.0 ? std::min(duration_, std::sqrt(remembered_ / measured_)) : duration_;
+}
+
+double ErrorScales::memory_of(const Vector& shape, double shape_squared, double h) {
+  const bool is_due = is_damped_ && (steps_ % stride == 0 || h != last_step_) && shape_squared > 0.0;
+  remembered_now_ = is_due ? space_.remembered_squared(shape) : -1.0;
+  measured_now_ = shape_squared;
+  if (!is_due) return memory();
+  const double now = std::sqrt(remembered_now_ / measured_now_);
+  return std::min(duration_, measured_ > 0.0 ? std::max(memory(), now) : now);
 }
 
 double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to, bool is_contact) const {
@@ -56,8 +70,7 @@ double ErrorScales::relative(double dq_squared, double dv_squared, const system:
   return std::sqrt(dq_squared + dv_squared / (omega * omega)) / size;
 }
 
-void ErrorScales::accept(const Vector& shape, double shape_squared, double y, double rate, const system::State& to,
-                         double h) {
+void ErrorScales::accept(double y, double rate, const system::State& to, double h) {
   if (!(y > 0.0)) return;
   if (!(y_ > 0.0)) expect(to);  // at rest until now
   const double share = -std::expm1(-frequency() * h / (2.0 * std::numbers::pi));
@@ -65,19 +78,19 @@ void ErrorScales::accept(const Vector& shape, double shape_squared, double y, do
     y_ += share * (y - y_);
     rate_ += share * (rate - rate_);
   }
-  constexpr long stride = 4;
+  if (remembered_now_ >= 0.0) {
+    const double weight = measured_ > 0.0 ? -std::expm1(-static_cast<double>(stride) * frequency() * h) : 1.0;
+    remembered_ += weight * (remembered_now_ - remembered_);
+    measured_ += weight * (measured_now_ - measured_);
+  }
+  last_step_ = h;
   if (steps_++ % stride != 0) return;
   size_ = std::max(size_, space_.displacement(to));
-  if (has_stops_ && !space_.touches(to)) {
-    const Vector& momentum = space_.times_mass(to.v);
-    const double speed_squared = momentum.dot(to.v), power = momentum.dot(to.auxiliary_acceleration);
-    speed_ += h * speed_squared;
-    if (speed_squared > 0.0) speed_rate_ += h * power * power / speed_squared;
-  }
-  if (!is_damped_) return;
-  const double damping = 0.5 * space_.damping(shape) / shape_squared;
-  const double weight = -std::expm1(-static_cast<double>(stride) * frequency() * h);
-  damping_ = damping_ < 0.0 ? damping : damping_ + weight * (damping - damping_);
+  if (!has_stops_ || space_.touches(to)) return;
+  const Vector& momentum = space_.times_mass(to.v);
+  const double speed_squared = momentum.dot(to.v), power = momentum.dot(to.auxiliary_acceleration);
+  speed_ += h * speed_squared;
+  if (speed_squared > 0.0) speed_rate_ += h * power * power / speed_squared;
 }
 
 }  // namespace rubato::integrate

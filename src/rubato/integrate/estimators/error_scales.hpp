@@ -8,9 +8,9 @@ namespace rubato::integrate {
 /// into one of displacement, and the time T over which errors add up.
 ///
 /// omega^2 = <|y'|^2>/<|y|^2> of what the error is made of, both averaged over about a period; what the start promises
-/// stands in for the past, since y alone may begin at zero. T = (1 - exp(-r t_end))/r: the whole march
-/// without damping, the time over which an error is forgotten with it. What costs products with the matrices is looked
-/// at on every fourth step: it changes over periods.
+/// stands in for the past, since y alone may begin at zero. T^2 = <|T y|^2>/<|y|^2> with the memory of each motion in y
+/// (DampingMemory): the whole march without damping, the time over which an error is forgotten with it. What costs
+/// products with the matrices is looked at on every fourth step: it changes over periods.
 ///
 /// A contact is passed in one go, and an error of its velocity stays in what follows as long as the speed stays as it
 /// is: where it is lower,
@@ -29,10 +29,16 @@ class ErrorScales {
   /// @param is_contact  a stop is closed at an end of the step
   double relative(double dq_squared, double dv_squared, const system::State& to, bool is_contact) const;
 
-  /// Takes in an accepted step.
-  /// @param shape  whose damping is that of the error [n], |shape|_M^2 beside it
-  /// @param y      |y|_M^2   @param rate  |y'|_M^2, negative where unknown
-  void accept(const Vector& shape, double shape_squared, double y, double rate, const system::State& to, double h);
+  /// The time T of a try, from what it remembers itself where that is due: on every fourth step, and on each of another
+  /// length than the last, since a motion that has died makes way for one of another memory within a few steps that
+  /// grow.
+  /// @param shape  whose errors are remembered [n], |shape|_M^2 beside it
+  double memory_of(const Vector& shape, double shape_squared, double h);
+
+  /// Takes in an accepted step, which memory_of() was asked for.
+  /// @param y     |y|_M^2
+  /// @param rate  |y'|_M^2, negative where unknown
+  void accept(double y, double rate, const system::State& to, double h);
 
   double size() const { return size_; }
   double frequency() const;
@@ -51,8 +57,10 @@ class ErrorScales {
   bool is_damped_;
   bool has_stops_;
   double size_ = 0.0, third_at_start_ = 0.0;
-  double y_ = 0.0, rate_ = 0.0;            // averages of |y|^2 and |y'|^2
-  double damping_ = -1.0;                  // r [1/s], averaged; negative: unknown
+  double y_ = 0.0, rate_ = 0.0;                        // averages of |y|^2 and |y'|^2
+  double remembered_ = 0.0, measured_ = 0.0;           // averages of |T y|^2 and |y|^2; 0: unknown
+  double remembered_now_ = -1.0, measured_now_ = 0.0;  // of the last try; negative: not due
+  double last_step_ = 0.0;
   double speed_ = 0.0, speed_rate_ = 0.0;  // integrals of |v|^2 and (d|v|/dt)^2 over time
   double promised_ = 0.0;                  // Omega before anything has moved
   long steps_ = 0;

@@ -1,3 +1,4 @@
+#include <rubato/integrate/estimators/damping_memory.hpp>
 #include <rubato/integrate/estimators/error_space.hpp>
 #include <rubato/integrate/estimators/load_scale.hpp>
 #include <rubato/integrate/estimators/mass_norm.hpp>
@@ -8,13 +9,16 @@ namespace {
 class StructureSpace final : public ErrorSpace {
  public:
   StructureSpace(const system::LocallyNonlinear& system, double duration)
-      : system_(system), norm_(system), duration_(duration), product_(system.size()) {}
+      : system_(system), norm_(system), duration_(duration), memory_(system, duration) {}
 
   Index size() const override { return system_.size(); }
   const Vector& times_mass(const Vector& x) override { return norm_.times(x); }
   double displacement(const system::State& state) override { return norm_(state.q); }
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
-    return response_scales(system_, state, acceleration, duration);
+    ResponseScales all = response_scales(system_, state, acceleration, duration);
+    if (!has_started_) all.reached = reached_by(system_, state.v, duration);
+    has_started_ = true;
+    return all;
   }
   /// Of what the loads promise a tenth: a promise may be ten times too large, as that of a record far above resonance,
   /// and without it a response that grows from nothing would be measured by nothing.
@@ -31,10 +35,7 @@ class StructureSpace final : public ErrorSpace {
     return (state.slider_force.tail(system_.stop_count()).array() > 0.0).any();
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
-  double damping(const Vector& x) override {
-    product_.noalias() = system_.damping() * x;
-    return x.dot(product_);
-  }
+  double remembered_squared(const Vector& x) override { return memory_.squared(x); }
 
  private:
   double promised() {
@@ -45,7 +46,8 @@ class StructureSpace final : public ErrorSpace {
   const system::LocallyNonlinear& system_;
   MassNorm norm_;
   double duration_, promised_ = -1.0;
-  Vector product_;
+  bool has_started_ = false;  // later the displacement itself tells how far velocities lead
+  DampingMemory memory_;
 };
 
 }  // namespace

@@ -27,8 +27,8 @@ class ErrorSpace {
   /// Whether a stop is closed.
   virtual bool touches(const system::State& state) const = 0;
   virtual bool is_damped() const = 0;
-  /// x^T C x
-  virtual double damping(const Vector& x) = 0;
+  /// |T x|_M^2 with the times T over which errors of a motion x are remembered (DampingMemory).
+  virtual double remembered_squared(const Vector& x) = 0;
 
   double squared(const Vector& x) { return x.dot(times_mass(x)); }
   double norm(const Vector& x) { return std::sqrt(squared(x)); }

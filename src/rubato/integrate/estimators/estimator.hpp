@@ -62,10 +62,10 @@ struct InertiaJump {
 ///   c = d^2/2 + gamma d + gamma/2 + kappa - 1/6,   kappa = -d (1 - alpha_m - alpha_f)/2
 ///   e = sqrt(|dq|_M^2 + |dv|_M^2/omega^2) T / (h s)
 ///
-/// with q''' and q'''' from differences of the auxiliary acceleration, the size s of the response (the largest |q|_M so
-/// far, what its acceleration promises, or a tenth of what the loads of the march do), the frequency omega =
-/// |q''''|/|q'''| averaged over about a period, and T the time over which errors add up, (1 - exp(-r t_end))/r with r =
-/// x^T C x/(2 x^T M x) the damping of what makes them.
+/// and not less than C h^2 |q'''| T/(sqrt(2) s), with q''' and q'''' from differences of the auxiliary acceleration,
+/// the size s of the response (the largest |q|_M so far, what its acceleration promises, or a tenth of what the loads
+/// of the march do), the frequency omega = |q''''|/|q'''| averaged over about a period, and T the time over which
+/// errors of q''' add up (DampingMemory).
 ///
 /// These are errors of the phase of a motion. What is faster than omega_c = (2/(C h^2 T))^(1/3), with C h^2 omega^3 the
 /// phase lost in a second, is out of phase before the end, and then errs by twice its amplitude 2 |q'''|/omega^3

@@ -67,7 +67,8 @@ double size_under_loads(const system::LocallyNonlinear& system, double duration)
   const system::Loads loads = system.loads();  // a copy: formulas are workspaces
   if (loads.terms().empty()) return 0.0;
   numerics::OrderedFactor factor;
-  const SparseMatrix held = system.stuck_stiffness() + 2.0 / (duration * duration) * system.mass();
+  const SparseMatrix held = SparseMatrix(system.stuck_stiffness() + 1.0 / duration * system.damping()) +
+                            2.0 / (duration * duration) * system.mass();
   factor.analyse(held, {});
   if (!factor.factorise(held)) return 0.0;  // a stiffness that is not one: nothing is promised
   MassNorm norm(system);

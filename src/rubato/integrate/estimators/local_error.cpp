@@ -34,11 +34,16 @@ class LocalErrorEstimator final : public Estimator {
     now_.step = h;
     now_.product = space_->times_mass(now_.jump);
     now_.squared = now_.jump.dot(now_.product);
-    now_.third = now_.squared / (h * h);
     now_.fourth = -1.0;
     is_contact_ = space_->touches(from) || space_->touches(to);
-    const double once = of_the_step(to, h), often = scales_.memory() / h;
-    if (c_.order == 1) return once * often;
+    if (c_.order == 1) {
+      now_.third = now_.squared / (h * h);
+      return of_the_step(to, h) * scales_.memory_of(now_.jump, now_.squared, h) / h;
+    }
+    slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
+    now_.third = space_->squared(slow_.value());
+    const double often = scales_.memory_of(slow_.value(), now_.third, h) / h;
+    const double once = of_the_step(to, h);
     // What a contact leaves is not a vibration that will be out of phase: its few steps share a part of the tolerance.
     const double event = is_contact_ ? once * steps_of_a_contact : once;
     return std::fmin(once * often, std::fmax(event, of_what_lasts(to, h) * often));
@@ -46,9 +51,9 @@ class LocalErrorEstimator final : public Estimator {
 
   void accept(const system::State& to) override {
     if (c_.order == 1) {
-      scales_.accept(now_.jump, now_.squared, now_.third, now_.fourth, to, now_.step);
+      scales_.accept(now_.third, now_.fourth, to, now_.step);
     } else {
-      scales_.accept(slow_.value(), now_.third, now_.third, now_.fourth, to, now_.step);
+      scales_.accept(now_.third, now_.fourth, to, now_.step);
       slow_.accept();
     }
     std::swap(now_, last_);
@@ -88,14 +93,13 @@ class LocalErrorEstimator final : public Estimator {
       dv_squared = dv * dv * dq_squared;
     }
     const double dq = c_.displacement * h * h;
-    return scales_.relative(dq * dq * dq_squared, dv_squared, to, is_contact_) / tolerance_;
+    const double change_squared = c_.order == 1 ? 0.0 : h * h * h * h * dq_squared;
+    return relative(dq * dq * dq_squared, dv_squared, change_squared, to, is_contact_);
   }
 
   /// Of the slow part of q''', which is what the scales are told of.
   double of_what_lasts(const system::State& to, double h) {
     const double h3 = h * h * h;
-    slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
-    now_.third = space_->squared(slow_.value());
     double third = now_.third, fourth;
     if (known_ >= 2) {
       now_.fourth = fourth = space_->squared(slow_.rate());
@@ -104,7 +108,19 @@ class LocalErrorEstimator final : public Estimator {
       fourth = third * std::pow(scales_.frequency(), 2);
     }
     const double dq = c_.displacement * h3, dv = c_.velocity_next * h3;
-    return scales_.relative(dq * dq * third, dv * dv * fourth, to, false) / tolerance_;
+    return relative(dq * dq * third, dv * dv * fourth, h3 * h3 * third, to, false);
+  }
+
+  /// Over the tolerance. An error of velocity c h^3 q'''' is one of displacement c h^3 q''' at most, summed over the
+  /// march (docs/theory/automatic-steps.md): the frequency by which it is divided may be that of a motion that has
+  /// died.
+  /// @param change_squared  |h^3 q'''|_M^2
+  double relative(double dq_squared, double dv_squared, double change_squared, const system::State& to,
+                  bool is_contact) const {
+    const double least = 0.5 * strength_ * strength_ * change_squared;
+    return std::fmax(scales_.relative(dq_squared, dv_squared, to, is_contact),
+                     scales_.relative(least, 0.0, to, false)) /
+           tolerance_;
   }
 
   struct Difference {

@@ -1,5 +1,6 @@
 #include <rubato/integrate/estimators/mass_norm.hpp>
 #include <rubato/integrate/estimators/response_scales.hpp>
+#include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,22 +8,42 @@
 namespace rubato::integrate {
 namespace {
 
-double raised(const ResponseScales::Shape& shape, int order) {
-  return shape.length > 0.0 ? shape.length * std::pow(shape.frequency, order) : 0.0;
-}
+double raised(double length, double rate, int order) { return length > 0.0 ? length * std::pow(rate, order) : 0.0; }
 
 }  // namespace
 
 double ResponseScales::size(double most) const {
-  return std::max({displacement.length, raised(velocity, -1), std::min(most, raised(acceleration, -2))});
+  return std::max({displacement.length, reached, raised(velocity.length, velocity.rate, -1),
+                   std::min(most, raised(acceleration.length, acceleration.rate, -2))});
 }
 
 double ResponseScales::derivative(int k) const {
-  return std::max(raised(velocity, k - 1), raised(acceleration, k - 2));
+  return std::max(raised(velocity.length, velocity.frequency, k - 1),
+                  raised(acceleration.length, acceleration.rate, k - 2));
 }
 
 double ResponseScales::frequency_of(int k) const {
-  return raised(velocity, k - 1) > raised(acceleration, k - 2) ? velocity.frequency : acceleration.frequency;
+  return raised(velocity.length, velocity.frequency, k - 1) > raised(acceleration.length, acceleration.rate, k - 2)
+             ? velocity.frequency
+             : acceleration.rate;
+}
+
+double reached_by(const system::LocallyNonlinear& system, const Vector& velocity, double duration) {
+  MassNorm norm(system);
+  const Vector momentum = norm.times(velocity);
+  if (!(momentum.dot(velocity) > 0.0)) return 0.0;
+  const SparseMatrix stiffness = system.stuck_stiffness();
+  numerics::OrderedFactor factor;
+  Vector q(system.size());
+  double reached = 0.0;
+  for (const double t : {duration, 0.1 * duration, 0.01 * duration}) {
+    const SparseMatrix held = SparseMatrix(t * stiffness + system.damping()) + (1.0 / t) * system.mass();
+    if (reached == 0.0) factor.analyse(held, {});
+    if (!factor.factorise(held)) return reached;  // a stiffness that is not one: nothing is promised
+    factor.solve(momentum, q);
+    reached = std::max(reached, norm(q));
+  }
+  return reached;
 }
 
 ResponseScales response_scales(const system::LocallyNonlinear& system, const system::State& state,
@@ -38,9 +59,11 @@ ResponseScales response_scales(const system::LocallyNonlinear& system, const sys
         work += system.stops()[static_cast<std::size_t>(i - system.slider_count())].stiffness *
                 std::pow(system.relative_displacement(i, x), 2);
     const double quotient = work / (length * length);
-    return {length, std::max(1.0 / duration, std::sqrt(std::max(0.0, quotient)))};
+    const double frequency = std::max(1.0 / duration, std::sqrt(std::max(0.0, quotient)));
+    const double damping = x.dot(system.damping() * x) / (length * length);
+    return {length, frequency, std::max(frequency, damping)};
   };
-  return {shape_of(state.q), shape_of(state.v), shape_of(acceleration)};
+  return {shape_of(state.q), shape_of(state.v), shape_of(acceleration), 0.0};
 }
 
 }  // namespace rubato::integrate

@@ -40,15 +40,16 @@ class MechanismSpace final : public ErrorSpace {
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
     const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
       const double length = norm(x);
-      return length > 0.0 ? ResponseScales::Shape{length, std::max(1.0 / duration, frequency(state, x, length))}
-                          : ResponseScales::Shape{};
+      if (!(length > 0.0)) return {};
+      const double omega = std::max(1.0 / duration, frequency(state, x, length));
+      return {length, omega, omega};
     };
-    return {{}, shape_of(state.v), shape_of(acceleration)};
+    return {{}, shape_of(state.v), shape_of(acceleration), 0.0};
   }
 
   // Dampers of joints change with the configuration: errors are not taken to be forgotten.
   bool is_damped() const override { return false; }
-  double damping(const Vector&) override { return 0.0; }
+  double remembered_squared(const Vector&) override { return 0.0; }
 
  private:
   /// sqrt(x^T K x / x^T M x), K x from the forces at both ends of a small motion along x.
