@@ -386,5 +386,39 @@ TEST(MechanismStudies, SayWhatNothingResistsWhereThereIsNoEquilibrium) {
   EXPECT_NE(ran.report.message.find("20 N is left on \"stone.y\""), std::string::npos) << ran.report.message;
 }
 
+// What damped Newmark takes of the speed of a body that turns is missing for the rest of the march, and after a time t
+// its place is behind by t/2 times as much: measured as a vibration of its frequency it was 14 tolerances behind after
+// 60 rad.
+TEST(MethodsOfFirstOrder, MeetTheirToleranceOnAMassThatTurns) {
+  const auto ran = testing::run_mechanism_study(R"(
+[[node]]
+name = "end"
+position = [1.0, 0.0]
+velocity = [0.0, 10.0]
+[[mass]]
+node = "end"
+mass = 5.0
+[[joint]]
+name = "rod"
+type = "distance"
+between = ["ground", "end"]
+at = [0.0, 0.0]
+[[analysis]]
+name = "run"
+type = "transient"
+method = "damped_newmark"
+step = { tolerance = 0.05 }
+duration = 6.0
+output = { interval = 0.1 }
+)");
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& table = ran.sink.tables.at("run");
+  const std::size_t x = table.column("position", "end.x"), y = table.column("position", "end.y");
+  double error = 0.0;
+  for (const auto& row : table.rows)
+    error = std::max(error, std::hypot(row[x] - std::cos(10.0 * row[0]), row[y] - std::sin(10.0 * row[0])));
+  EXPECT_LT(error / 2.0, 10.0 * 0.05);  // of the way, the diameter
+}
+
 }  // namespace
 }  // namespace rubato

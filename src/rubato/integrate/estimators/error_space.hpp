@@ -23,6 +23,9 @@ class ErrorSpace {
   /// Size that a state promises [m sqrt(kg)]; 0 where only what has moved counts.
   virtual double promised_size(const ResponseScales& scales) = 0;
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;
+  /// Whether nothing brings back what goes too slowly: an error of speed then grows into one of place for the whole
+  /// march.
+  virtual bool turns_freely() const { return false; }
   virtual bool has_stops() const = 0;
   /// Whether a stop is closed.
   virtual bool touches(const system::State& state) const = 0;

@@ -19,6 +19,7 @@ class LocalErrorEstimator final : public Estimator {
         c_(constants),
         space_(std::move(space)),
         scales_(*space_, duration, 3),
+        duration_(duration),
         slow_(space_->size()),
         now_(space_->size()),
         last_(space_->size()) {}
@@ -38,7 +39,8 @@ class LocalErrorEstimator final : public Estimator {
     is_contact_ = space_->touches(from) || space_->touches(to);
     if (c_.order == 1) {
       now_.third = now_.squared / (h * h);
-      return of_the_step(to, h) * scales_.memory_of(now_.jump, now_.squared, h) / h;
+      const double often = scales_.memory_of(now_.jump, now_.squared, h) / h;
+      return std::fmax(of_the_step(to, h), of_speed(to, h)) * often;
     }
     slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
     now_.third = space_->squared(slow_.value());
@@ -123,6 +125,17 @@ class LocalErrorEstimator final : public Estimator {
            tolerance_;
   }
 
+  /// Of a method of first order on what turns freely: dv = velocity h^2 q''' brakes it (q''' of a body that turns at
+  /// Omega is -Omega^2 v), and what is lost of the speed lasts. Over a march of length T the place falls behind by T/2
+  /// times the loss of all steps, where a vibration would by 1/omega times it.
+  double of_speed(const system::State& to, double h) {
+    if (!space_->turns_freely()) return 0.0;
+    const double along = std::abs(now_.product.dot(to.v)), speed = space_->norm(to.v);
+    if (!(speed > 0.0)) return 0.0;
+    const double loss = std::abs(c_.velocity) * h * along / speed, behind = 0.5 * duration_ * loss;
+    return scales_.relative(behind * behind, 0.0, to, false) / tolerance_;
+  }
+
   struct Difference {
     explicit Difference(Index n) : jump(n), product(n) {}
     Vector jump, product;  // J and M J
@@ -137,6 +150,7 @@ class LocalErrorEstimator final : public Estimator {
   double strength_ = std::hypot(c_.displacement, c_.velocity_next);
   std::unique_ptr<ErrorSpace> space_;
   ErrorScales scales_;
+  double duration_;
   SlowPart slow_;
   Difference now_, last_;
   int known_ = 0;  // accepted steps since the start or the last kink, up to two

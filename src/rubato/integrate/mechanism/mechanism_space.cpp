@@ -31,6 +31,7 @@ class MechanismSpace final : public ErrorSpace {
     return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
   }
 
+  bool turns_freely() const override { return true; }
   bool has_stops() const override { return false; }
   bool touches(const system::State&) const override { return false; }
 
