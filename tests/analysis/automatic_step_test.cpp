@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 
 namespace rubato::analysis {
@@ -164,6 +165,46 @@ TEST(AutomaticStep, HalvesBeforeALoadThatIsNotFiniteAndKeepsWhatItHas) {
   EXPECT_NE(result.report.message.find("not finite appeared at coordinate \"a\""), std::string::npos);
   EXPECT_NEAR(result.column("time").back(), 1.0, 1e-6);
   EXPECT_GT(std::stol(result.statistic("failed")), 5);
+}
+
+/// The largest difference of the positions of a mass with a slider from those of the exact flow, over the largest.
+double error_of_pair(const std::string& method, double tolerance, std::optional<bool> locate) {
+  const auto system = testing::single_mass(0.15);
+  auto d = description(tolerance, 50.0, method);
+  d.automatic_step->locate_events = locate;
+  d.output.kind = Kind::interval;
+  d.output.interval = model::Quantity(0.5);
+  auto exact = d;
+  exact.method.name = "exact";
+  exact.automatic_step.reset();
+  const auto x = run(system, d).column("position", "mass"), truth = run(system, exact).column("position", "mass");
+  EXPECT_EQ(x.size(), truth.size());
+  double error = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    error = std::max(error, std::abs(x[i] - truth[i]));
+    size = std::max(size, std::abs(truth[i]));
+  }
+  return error / size;
+}
+
+// Within a step a transition costs what the order of a pair cannot see: errors of 1e-3 at any tolerance.
+TEST(EmbeddedPairs, MeetTheirToleranceWithASliderSinceTheyLocateIt) {
+  for (const char* method : {"dormand_prince", "bogacki_shampine"})
+    for (const double tolerance : {1e-3, 1e-4, 1e-5})
+      EXPECT_LT(error_of_pair(method, tolerance, std::nullopt), 10.0 * tolerance) << method << " at " << tolerance;
+  EXPECT_GT(error_of_pair("dormand_prince", 1e-5, false), 10.0 * 1e-5);
+}
+
+TEST(FixedController, SaysThatTheToleranceIsNotMet) {
+  auto d = description(1e-4, 50.0, "generalized_alpha");
+  d.automatic_step->controller = "fixed";
+  d.automatic_step->first = model::Quantity(0.1);
+  const Recorded coarse = run(testing::single_mass(), d);
+  ASSERT_EQ(coarse.report.warnings.size(), 1u);
+  EXPECT_NE(coarse.report.warnings[0].find("the tolerance 0.0001 is not met"), std::string::npos);
+  d.automatic_step->first = model::Quantity(0.002);
+  EXPECT_TRUE(run(testing::single_mass(), d).report.warnings.empty());
+  EXPECT_TRUE(run(testing::single_mass(), description(1e-4, 50.0, "generalized_alpha")).report.warnings.empty());
 }
 
 }  // namespace

@@ -120,8 +120,12 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
   integrate::StepPlan& plan = step.plan;
   plan.controller = controller_of(description.controller);
-  plan.locate_events = description.locate_events.value_or(system.stop_count() > 0);
-  plan.locate_sliders = description.locate_events.has_value();
+  // A pair is of so high an order that a transition within a step is all of its error, and its estimate does not see
+  // it.
+  const bool is_pair = std::holds_alternative<integrate::RungeKutta>(method.formula);
+  plan.locate_sliders = is_pair || description.locate_events.has_value();
+  plan.locate_events =
+      description.locate_events.value_or(system.stop_count() > 0 || (is_pair && system.slider_count() > 0));
   plan.rebuild = description.rebuild;
   const LoadSwings swings(system, parameters, duration);
   plan_step_range(title, description, parameters, duration,
@@ -171,6 +175,15 @@ void StepRecorder::tried(const integrate::StepTry& step_try) {
 std::string summary(const AutomaticStep& step) {
   return fmt::format("tolerance {} ({}, {})", step.tolerance, integrate::name_of(step.estimator),
                      integrate::name_of(step.plan.controller));
+}
+
+std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticStep& step) {
+  if (report.beyond_tolerance == 0 || !step.asks_for_tolerance) return "";
+  return fmt::format(
+      "the tolerance {} is not met: the estimated error of {} of {} steps is above it, up to {:.2g} times; the "
+      "controller "
+      "fixed only watches: take the controller pi, or a shorter first step",
+      step.tolerance, report.beyond_tolerance, report.march.steps, report.largest_error);
 }
 
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length) {

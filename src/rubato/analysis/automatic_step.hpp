@@ -19,7 +19,8 @@ struct AutomaticStep {
   integrate::StepPlan plan;
   integrate::EstimatorKind estimator;
   double tolerance = 1e-3;
-  double expected_steps = 0.0;  ///< at least: what the largest step takes; for the size of files
+  bool asks_for_tolerance = true;  ///< false: equal steps of a mechanism, whose error nobody asked for
+  double expected_steps = 0.0;     ///< at least: what the largest step takes; for the size of files
 };
 
 /// A value that must be positive where it is given. Throws InvalidInput at its place.
@@ -64,6 +65,9 @@ std::string summary(const AutomaticStep& step);
 
 /// What to do where the error asks for a step below the smallest: look at the study's own limits first.
 std::string advice_on_smallest(const integrate::StepPlan& plan, double duration);
+
+/// What to tell of a march that kept steps whose error is above the tolerance; empty: nothing.
+std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticStep& step);
 
 /// What the march counted, for the results.
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length);

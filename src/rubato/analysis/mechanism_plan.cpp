@@ -49,6 +49,7 @@ void refuse_short_tables(const model::Mechanism& model, double duration, const L
 
 AutomaticStep fixed_step(double step, double duration) {
   AutomaticStep automatic;
+  automatic.asks_for_tolerance = false;
   automatic.plan.controller = integrate::FixedStep{};
   automatic.plan.first = automatic.plan.largest = step;
   automatic.plan.smallest = 1e-12 * duration;

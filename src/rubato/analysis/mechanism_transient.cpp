@@ -181,6 +181,8 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
   run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
   run.warnings = plan.warnings;
+  if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
+    run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
     run.warnings.push_back(fmt::format(
         "Newton's method failed in {} of the equal steps, and was given shorter ones from there to the next "

@@ -189,6 +189,8 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
           integrate::march(*stepper, *estimator, plan.automatic->plan, system, state, plan.duration, &observer, &tries);
       report = adaptive.march;
       run.statistics = statistics(adaptive, state.t);
+      if (const std::string warning = warning_of(adaptive, *plan.automatic); !warning.empty())
+        run.warnings.push_back(warning);
     } else {
       integrate::LoadJumps jumps(system, state.t, plan.duration);
       report = integrate::march(*stepper, state, plan.step, plan.duration, &observer, &jumps);

@@ -253,6 +253,8 @@ class Marcher {
     remember(base_step_);
     lost_ = length.lost;
     ++report_.march.steps;
+    if (!(error <= 1.0)) ++report_.beyond_tolerance;
+    report_.largest_error = std::fmax(report_.largest_error, error);
     report_.smallest_step = std::min(report_.smallest_step, length.step);
     report_.largest_step = std::max(report_.largest_step, length.step);
     if (observer_ && !observer_->accepted(base_, to_)) {

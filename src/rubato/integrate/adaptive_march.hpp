@@ -53,7 +53,9 @@ struct AdaptiveReport {
   long failed = 0;    ///< not converged, not finite or singular: halved
   long events = 0;    ///< transitions located
   long event_tries = 0;
-  long restarts = 0;  ///< after jumps of loads and transitions
+  long beyond_tolerance = 0;  ///< accepted steps whose error is above the tolerance: what the controller `fixed` allows
+  double largest_error = 0.0;  ///< of an accepted step, over the tolerance
+  long restarts = 0;           ///< after jumps of loads and transitions
   long solves = 0;
   long factorisations = 0;
   double smallest_step = HUGE_VAL, largest_step = 0.0;  ///< accepted [s]
