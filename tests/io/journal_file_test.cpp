@@ -189,8 +189,8 @@ TEST_F(DamagedJournal, GivesRightPiecesOrAWordWhateverIsDoneToIt) {
     const long finished = finished_of(bytes);
     // Nothing is said where whole pieces are missing at the end: so does a run leave it that is killed in time.
     const bool is_a_beginning = bytes.size() <= bytes_.size() && bytes_.starts_with(bytes);
-    EXPECT_EQ(damage_.empty(), is_a_beginning && (bytes.size() <= head_ || bytes.size() == bytes_.size() ||
-                                                  std::count(places_.begin(), places_.end(), bytes.size()) > 0) ||
+    EXPECT_EQ(damage_.empty(), (is_a_beginning && (bytes.size() <= head_ || bytes.size() == bytes_.size() ||
+                                                   std::count(places_.begin(), places_.end(), bytes.size()) > 0)) ||
                                    bytes == bytes_)
         << i << ": " << finished << " " << damage_;
   }

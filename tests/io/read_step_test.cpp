@@ -20,10 +20,13 @@ TEST(AutomaticStep, TakesEveryControllerWithEveryEstimatorThatSuitsTheMethod) {
   for (const std::string controller : {"\"pi\"", "\"cardona_cassano\"", "\"fixed\", first = 0.01"})
     for (const std::string estimator : {"\"local_error\"", "\"inertia_jump\", reference = \"2*sqrt(2)\""})
       for (const std::string method :
-           {"hht", "wbz", "generalized_alpha", "average_acceleration", "damped_newmark", "wilson_theta"})
-        EXPECT_EQ(verdict_on("tolerance = 1e-3, controller = " + controller + ", estimator = " + estimator,
-                             "method = \"" + method + "\"\n"),
-                  "accepted");
+           {"hht", "wbz", "generalized_alpha", "average_acceleration", "damped_newmark", "wilson_theta"}) {
+        const bool is_of_first_order = method == "damped_newmark";  // which inertia_jump cannot judge
+        EXPECT_THAT(verdict_on("tolerance = 1e-3, controller = " + controller + ", estimator = " + estimator,
+                               "method = \"" + method + "\"\n"),
+                    is_of_first_order && estimator != "\"local_error\"" ? EndsWith("take the estimator local_error")
+                                                                        : EndsWith("accepted"));
+      }
   for (const std::string method : {"wilson_theta", "bogacki_shampine", "dormand_prince"})
     EXPECT_EQ(verdict_on("tolerance = \"N0/1e4\", events = \"locate\"", "method = \"" + method + "\"\n"), "accepted");
 }

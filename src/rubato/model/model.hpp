@@ -104,7 +104,7 @@ struct Model {
   std::vector<Force> forces;
   std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;
-  std::vector<Prescribed> prescribed;  ///< rising coordinates
+  std::vector<Prescribed> prescribed;  ///< in the order of the description
   Axis gravity = Axis::Zero();         ///< acts on the nodes [m/s2]
   std::optional<BaseMotion> base_motion;
 
