@@ -18,11 +18,9 @@ void raise_flag(int signal) {
   std::raise(signal);
 }
 
-// Terminals and supervisors send this one beside another, or twice: it is no second request.
-void raise_flag_by_hangup(int) {
-  stop.store(true);
-  was_asked.store(true);
-}
+// Terminals and supervisors send this one beside another, in either order, or twice: it is neither a first nor a second
+// request to end at once.
+void raise_flag_by_hangup(int) { stop.store(true); }
 
 void on(int signal, void (*handler)(int), int flags) {
   struct sigaction action {};

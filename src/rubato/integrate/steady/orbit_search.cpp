@@ -17,9 +17,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double round_off = 1e-13;
-constexpr double still = 1e-12;       // of the state: what a slider that kept its slip may have moved
-constexpr double surely_drifts = 10;  // times the tolerance, in a period
-constexpr int most_misled = 2;        // leaps, before the derivative of a period is measured
+constexpr double still = 1e-12;         // of the state: what a slider that kept its slip may have moved
+constexpr double surely_drifts = 10;    // times the tolerance, in a period
+constexpr int most_patience = 1 << 20;  // periods marched between leaps, which double where a leap misleads
+constexpr int most_misled = 2;          // leaps, before the derivative of a period is measured
 
 enum class Next { rests, marches, leaps };
 
@@ -79,7 +80,7 @@ class Lane {
       is_measured_ = false;
       ++misled_;
       plain_ = patience_;
-      patience_ *= 2;
+      patience_ = std::min(2 * patience_, most_patience);
       best_ = infinity;
     }
     best_ = std::min(best_, report.residual);
