@@ -147,7 +147,9 @@ class Marcher {
     if (!decision.accepts) {
       ++report_.rejected;
       history_.was_rejected = true;
-      return shorten(decision.next, {StepOutcome::too_small, -1});
+      shorten(decision.next, {StepOutcome::too_small, -1});
+      if (goes_on_ && stagnates(length.step, error)) begin_anew_here();
+      return;
     }
     // A step cut short says little about the next, and nothing about what follows a transition.
     const bool was_cut = length.step < wanted_ * (1.0 - same_step);
@@ -159,6 +161,24 @@ class Marcher {
     if (crawls(length.step)) return fail({StepOutcome::crawls, -1}, length.step);
     if (is_event && base_.t < end_ && goes_on_) pass_event();
     if (length.arrives && base_.t < end_ && goes_on_) pass_breakpoint();
+  }
+
+  /// Whether the error stays while steps are tried that are ever shorter: what it shows is then no error of theirs, but
+  /// an acceleration that a much longer step left behind.
+  bool stagnates(double step, double error) {
+    constexpr double much_shorter = 1e-2, half = 0.5;
+    if (!(stagnant_error_ > 0.0) || error < half * stagnant_error_) {
+      stagnant_error_ = error;
+      stagnant_step_ = step;
+    }
+    return !has_begun_anew_ && step < much_shorter * stagnant_step_;
+  }
+
+  /// From the accelerations of equilibrium at the last accepted state; once a state.
+  void begin_anew_here() {
+    has_begun_anew_ = true;
+    if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
+    start_anew();
   }
 
   /// Whether steps have been so short for so long that the run would not end: of a run that takes longer steps at all.
@@ -248,6 +268,8 @@ class Marcher {
   void accept(const Length& length, double error) {
     history_ = {error, length.step, false, history_.forgone};
     estimator_.accept(to_);
+    stagnant_error_ = 0.0;
+    has_begun_anew_ = false;
     base_step_ = length.step;
     part_ = base_step_;
     remember(base_step_);
@@ -332,6 +354,9 @@ class Marcher {
   std::array<double, 16> lengths_{};  // of the last steps, the last first
   ControlHistory history_;
   int crawling_ = 0;  // steps in a row
+  double stagnant_error_ = 0.0,
+         stagnant_step_ = 0.0;   // of the first of the rejected tries whose errors do not fall; 0: none
+  bool has_begun_anew_ = false;  // since the last accepted step
   bool goes_on_ = true;
   AdaptiveReport report_;
 };
