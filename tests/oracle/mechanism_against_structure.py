@@ -14,8 +14,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import numpy as np  # noqa: E402
 
-from generate_mechanism import text_of  # noqa: E402
-from mechanism_judge import read_csv  # noqa: E402
+from random_mechanism import text_of  # noqa: E402
+from mechanism.judge import read_csv  # noqa: E402
 
 
 def lines(tables):

@@ -20,11 +20,11 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import numpy as np  # noqa: E402
 
-from generate_mechanism import generate  # noqa: E402
+from random_mechanism import generate  # noqa: E402
 from mechanism import Mechanism  # noqa: E402
-from mechanism_judge import LOOSER, judge, unit_of  # noqa: E402
-from mechanism_march import March  # noqa: E402
-from mechanism_rest import equilibrium  # noqa: E402
+from mechanism.judge import LOOSER, judge, unit_of  # noqa: E402
+from mechanism.march import March  # noqa: E402
+from mechanism.rest import equilibrium  # noqa: E402
 from study import Study, Unreadable  # noqa: E402
 
 ORACLE_SECONDS = 20

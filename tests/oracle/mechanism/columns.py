@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mechanism import vector_of
+from mechanism.rotations import vector_of
 
 LETTERS = ["x", "y", "z", "rx", "ry", "rz"]
 
@@ -27,7 +27,7 @@ def motion(march, state, a):
 
 def wrench(march, state, mu, derivatives, joint, numbers):
     """Force and moment, by the axes of the world, of these rows on the joint's second part, about its point there."""
-    m, b = march.model, joint.second
+    b = joint.second
     line = mu[numbers] @ derivatives[numbers][:, 6 * b : 6 * b + 6]
     force, moment = line[:3], state.R[b] @ line[3:]
     return force, moment - np.cross(state.R[b] @ joint.arm2, force)

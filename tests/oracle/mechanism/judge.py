@@ -7,8 +7,8 @@ import re
 import numpy as np
 
 from mechanism import Mechanism, Refused
-from mechanism_columns import transient_row
-from mechanism_march import March
+from mechanism.columns import transient_row
+from mechanism.march import March
 
 # errors of accelerations, reactions and energies over those of positions and velocities
 LOOSER = {"m": 1, "rad": 5, "m/s": 20, "rad/s": 20, "m/s2": 200, "rad/s2": 200, "N": 200, "N m": 200, "J": 20}
@@ -91,7 +91,7 @@ def transient(study, analysis, folder, start=None):
     theirs = {k: v[few] if isinstance(v, np.ndarray) else v for k, v in theirs.items()}
     times = theirs["time [s]"]
     if start is None and analysis.get("initial") == "static":
-        from mechanism_rest import equilibrium
+        from mechanism.rest import equilibrium
         start = equilibrium(march, velocities=True)
     pairs = march.run(duration, times, start=start, columns=transient_row)
     ours = {k: np.array([p[0].get(k, np.nan) for p in pairs]) for k in pairs[0][0]}
@@ -143,8 +143,8 @@ def thin(times, most=40):
 
 
 def judge_static(study, analysis, folder):
-    from mechanism_columns import transient_row
-    from mechanism_rest import equilibrium
+    from mechanism.columns import transient_row
+    from mechanism.rest import equilibrium
     march = March(Mechanism(study))
     state = equilibrium(march)
     ours = transient_row(march, state, 0.0, np.zeros(4))[0]
@@ -160,7 +160,7 @@ def judge_static(study, analysis, folder):
 
 
 def judge_modes(study, analysis, folder):
-    from mechanism_rest import eigenvalues, equilibrium, modes_about
+    from mechanism.rest import eigenvalues, equilibrium, modes_about
     model = Mechanism(study)
     march = March(model)
     about, at, coarse = analysis.get("about", "given"), 0.0, 1.0

@@ -5,7 +5,6 @@ motion that a part can make by itself; the constraints then leave the motions th
 """
 
 import numpy as np
-import scipy.linalg
 
 from mechanism import Refused, moved
 

@@ -1,0 +1,289 @@
+"""Transients of mechanisms by brute force: DOP853 from event to event.
+
+Positions and velocities are put back onto the constraints after every step.
+"""
+
+import math
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from mechanism import Mechanism, Refused, State, moved
+from mechanism.events import Events
+from mechanism.friction import Lock, ReadsFriction
+from mechanism.instant import Instant
+from mechanism.rotations import product
+
+
+class March(ReadsFriction, Instant, Events):
+    def __init__(self, model: Mechanism, rtol=1e-10):
+        self.model, self.rtol = model, rtol
+        m = model
+        L = np.linalg.cholesky(m.M)
+        self.Linv = np.linalg.inv(L)
+        self.box = self._size()
+        self.dry, self.locks = [], []
+        self.events = []
+        self.lost = 0.0
+        self.window = (0.0, math.inf)
+        self.drives = [j for j in m.joints if j.drive_formula is not None or j.drive_points is not None]
+        self._read_friction()
+
+    def _size(self):
+        places = [p for p in self.model.start_r[1:]]
+        for j in self.model.joints:
+            places += [j.at, j.to]
+        places = np.array(places)
+        size = np.linalg.norm(places.max(0) - places.min(0))
+        return size if size > 0 else 1.0
+
+    # ---- packing ----------------------------------------------------------------------------------------------------
+    def pack(self, state, works):
+        if self.model.space:
+            return np.concatenate([state.r.ravel(), state.q.ravel(), state.u, state.turns, works])
+        return np.concatenate([state.r[:, :2].ravel(), state.angle, state.u, works])
+
+    def unpack(self, y):
+        m, n = self.model, len(self.model.names)
+        if m.space:
+            r, q = y[: 3 * n].reshape(n, 3), y[3 * n : 7 * n].reshape(n, 4)
+            return State(r, q, y[7 * n : 7 * n + m.nf], m.start_angle, y[7 * n + m.nf : 7 * n + m.nf + len(m.atans)]), y[-4:]
+        r = np.zeros((n, 3))
+        r[:, :2] = y[: 2 * n].reshape(n, 2)
+        angle = y[2 * n : 3 * n]
+        q = np.zeros((n, 4))
+        q[:, 0], q[:, 3] = np.cos(angle / 2), np.sin(angle / 2)
+        return State(r, q, y[3 * n : 3 * n + m.nf], angle, np.zeros(0)), y[-4:]
+
+    def slope(self, t, y):
+        m = self.model
+        state, _ = self.unpack(y)
+        kin = m.scalars(state)
+        a, mu, G = self.instant(state, t, kin)
+        _, tally = self.applied(state, t, kin, tally=True)
+        u = m.all_velocities(state.u)
+        friction = 0.0
+        for d in self.dry:
+            if d.going is not None and not d.resting:
+                slip = d.maps @ kin[2]
+                friction += d.limit_now * (np.linalg.norm(slip) if len(slip) > 1 else float(d.going @ slip))
+        drive = 0.0
+        for k, j in enumerate(self.drives):
+            drive += mu[len(m.row_map) + k] * m.drive_at(j, self.clamp(t))[1]
+        works = [tally["damper"], friction, tally["load"], drive]
+        if m.space:
+            q1 = product(state.q, np.concatenate([np.zeros((len(u), 1)), u[:, 3:]], axis=1)) / 2
+            atans = kin[2][m.first_atan : m.first_atan + len(m.atans)]
+            return np.concatenate([u[:, :3].ravel(), q1.ravel(), a, atans, works])
+        return np.concatenate([u[:, :2].ravel(), u[:, 5], a, works])
+
+    # ---- constraints ------------------------------------------------------------------------------------------------
+    def project(self, state, t, positions=True, velocities=True, tries=20):
+        m = self.model
+        if positions:
+            for _ in range(tries):
+                kin = m.scalars(state)
+                G, gap, _, _ = self.rows(state, t, kin)
+                if len(G) == 0:
+                    break
+                solve = self._through(G)
+                dq = -(self.Linv.T @ (self.Linv @ (G.T @ solve(gap))))
+                u = state.u
+                state = moved(m, state, dq)
+                state.u = u
+                if np.linalg.norm(dq) < 1e-13 * (1 + self.box):
+                    break
+        if velocities:
+            state = self.project_velocities(state, t)
+        return state
+
+    def project_velocities(self, state, t):
+        return self.impulse(state, t)[0]
+
+    def impulse(self, state, t):
+        """The state with velocities that the rows allow, and the work of the drives' impulses: each times the mean of its rate."""
+        m = self.model
+        kin = m.scalars(state)
+        G, _, rate, _ = self.rows(state, t, kin)
+        if len(G) == 0:
+            return state, 0.0
+        impulses = -self._through(G)(rate)
+        out = state.copy()
+        out.u = state.u + self.Linv.T @ (self.Linv @ (G.T @ impulses))
+        work = 0.0
+        for k, j in enumerate(self.drives):
+            line = G[len(m.row_map) + k]
+            work += impulses[len(m.row_map) + k] * (line @ state.u + line @ out.u) / 2
+        return out, work
+
+    # ---- the march --------------------------------------------------------------------------------------------------
+    def begin(self, state=None):
+        """The start: onto the constraints, locks open on the side of the start, velocities projected."""
+        m = self.model
+        self.window = (0.0, math.inf)
+        state = state if state is not None else m.start_state()
+        ways = m.way_map @ m.scalars(m.start_state())[0] + m.way_constant
+        self.rest_default = ways.copy()
+        for d in self.dry:
+            d.going, d.resting, d.fresh, d.place = np.zeros(len(d.maps)), True, False, np.zeros(len(d.maps))
+        state = self.project(state, 0.0)
+        here = m.way_map @ m.scalars(state)[0] + m.way_constant
+        if not self.locks:
+            self.locks = [Lock(j, math.copysign(1.0, j.lock["at"] - here[j.way])) for j in m.joints if j.lock is not None]
+        self._refuse_immobile(state)
+        for d in self.dry:
+            d.resting = False
+        return state
+
+    def _refuse_immobile(self, state):
+        """What a dry joint carries that the other joints leave no motion is not determined."""
+        kin = self.model.scalars(state)
+        G = self.rows(state, 0.0, kin)[0]
+        if not self.dry or len(G) == 0:
+            return
+        basis = np.linalg.svd(self.Linv @ G.T, full_matrices=False)
+        span = basis[0][:, basis[1] > 1e-9 * basis[1][0]]
+        for d in self.dry:
+            for line in d.maps @ kin[1]:
+                seen = self.Linv @ line
+                if np.linalg.norm(seen - span @ (span.T @ seen)) < 1e-6 * np.linalg.norm(seen):
+                    raise Refused("a dry joint that the others leave no motion")
+
+    def breaks(self, duration):
+        m = self.model
+        found = set()
+        for *_, law in m.forces:
+            found.update(law.switches(0.0, duration))
+        for j in m.joints:
+            if j.formula is not None and "t" in j.formula.parsed.used:
+                ways = {j.formula_way: float(self.rest_default[j.way]), "rate": 0.0}
+                found.update(_switches(lambda t: j.formula.decisions(t=t, **ways), 0.0, duration))
+            if j.drive_formula is not None:
+                found.update(_switches(lambda t: j.drive_formula.decisions(t=t), 0.0, duration))
+            if j.drive_points is not None:
+                found.update(t for t in j.drive_points[:, 0] if 0 < t < duration)
+        merged = []
+        for t in sorted(found):
+            if not merged or t - merged[-1] > 1e-12 * duration:
+                merged.append(t)
+        return merged
+
+    def run(self, duration, times, start=None, columns=None):
+        """Marches and returns what `columns(march, state, t, works)` gives at each of the times."""
+        state = self.begin(start)
+        works = np.zeros(4)
+        self.duration = duration
+        marks = self.breaks(duration) + [duration]
+        t = 0.0
+        self.window = (0.0, marks[0])
+        self.rates_scale = self._rate_scale(state, duration)
+        self.settle_by_rates(state)
+        state = self.settle(state, t)
+        out, next_time = [], 0
+        times = list(times)
+
+        def write(state, t, works):
+            out.append(columns(self, state, t, works) if columns else (t, state.copy()))
+
+        for mark in marks:
+            self.window = (t, mark)
+            if t > 0:
+                u0 = state.u
+                state, work = self.impulse(state, t)
+                if np.linalg.norm(state.u - u0) > 1e-12 * self.rates_scale:
+                    works = works + np.array([0.0, 0.0, 0.0, work])
+                    self.settle_by_rates(state)
+                state = self.settle(state, t)
+            while t < mark:
+                solver = DOP853(self.slope, t, self.pack(state, works), mark, rtol=self.rtol, atol=self._atol(state))
+                found = None
+                while solver.status == "running":
+                    t0 = solver.t
+                    message = solver.step()
+                    if solver.status == "failed":
+                        raise Refused(f"DOP853 at {t0}: {message}")
+                    dense = solver.dense_output()
+                    found = self.first_event(dense, t0, solver.t)
+                    end = found[0] if found else solver.t
+                    while next_time < len(times) and times[next_time] <= end and (times[next_time] < end or (not found and end == mark)
+                                                                                   or not found):
+                        s, w = self.unpack(dense(times[next_time]))
+                        s = self.project(s.copy(), times[next_time], tries=3)
+                        write(s, times[next_time], w)
+                        next_time += 1
+                    for d in self.dry:
+                        d.fresh = False
+                    if found:
+                        break
+                    s, w = self.unpack(solver.y)
+                    s = self.project(s.copy(), solver.t, tries=2)
+                    solver.y = self.pack(s, w)
+                    solver.f = solver.fun(solver.t, solver.y)
+                    self.steps = getattr(self, "steps", 0) + 1
+                    if self.steps > 20000:
+                        raise Refused("too many steps")
+                if found:
+                    t = found[0]
+                    s, works = self.unpack(dense(t))
+                    state = self.project(s.copy(), t, tries=3)
+                    works = works.copy()
+                    self.driven = 0.0
+                    state = self.change(state, t, found[1])
+                    works[3] += self.driven
+                    if len(self.events) > 400:
+                        raise Refused("too many events")
+                else:
+                    t = solver.t
+                    state, works = self.unpack(solver.y)
+                    state, works = state.copy(), works.copy()
+        while next_time < len(times):
+            write(state, times[next_time], works)
+            next_time += 1
+        return out
+
+    def _rate_scale(self, state, duration):
+        return max(np.linalg.norm(state.u), 1e-3 * self.box / duration)
+
+    def _atol(self, state):
+        y = self.pack(state, np.zeros(4))
+        n, nf = len(self.model.names), self.model.nf
+        places = 3 * n if self.model.space else 2 * n
+        turns = 4 * n if self.model.space else n
+        atol = np.empty(len(y))
+        atol[:places] = self.rtol * self.box
+        atol[places : places + turns] = self.rtol
+        w = self.model.free % 6
+        speed = max(np.linalg.norm(state.u[w < 3]) if np.any(w < 3) else 0, self.box / self.duration)
+        spin = max(np.linalg.norm(state.u[w >= 3]) if np.any(w >= 3) else 0, 1 / self.duration)
+        atol[places + turns : places + turns + nf] = self.rtol * np.where(w < 3, speed, spin)
+        atol[places + turns + nf :] = self.rtol
+        atol[-4:] = 1e300
+        return atol
+
+    def kinetic(self, state):
+        return float(state.u @ self.model.M @ state.u) / 2
+
+
+def _switches(decisions, begin, end, samples=4001):
+    times = np.linspace(begin, end, samples)
+    found = []
+
+    def search(a, at_a, b, at_b):
+        if at_a == at_b:
+            return
+        middle = 0.5 * (a + b)
+        if middle <= a or middle >= b:
+            found.append(b)
+            return
+        at_middle = decisions(middle)
+        search(a, at_a, middle, at_middle)
+        search(middle, at_middle, b, at_b)
+
+    before = decisions(times[0])
+    if not before and not decisions(times[-1]):
+        return []
+    for a, b in zip(times[:-1], times[1:]):
+        after = decisions(b)
+        search(a, before, b, after)
+        before = after
+    return [t for t in found if begin < t < end]
