@@ -1,11 +1,15 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/bound_formula.hpp>
 #include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/time_formula.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace rubato::numerics {
 namespace {
@@ -26,6 +30,24 @@ TEST(Expression, EvaluatesFormulasOfParametersAndPi) {
   EXPECT_EQ(Expression("2 * pi", parameters)(), 2.0 * std::numbers::pi);
   EXPECT_EQ(Expression("N0 == 10 ? 1 : 0", parameters)(), 1.0);
   EXPECT_EQ(Expression("(N0 != 10) + (N0 <= 10) + (N0 >= 11)", parameters)(), 1.0);
+}
+
+// muParser refuses the second of two signs before a value.
+TEST(Expression, TakesSeveralSignsInARow) {
+  const Parameters of_a{{"a", 2.0}};
+  const std::vector<std::pair<std::string, double>> said{
+      {"- -3", 3.0},           {"--3", 3.0},     {"---3", -3.0},       {"- +3", -3.0},
+      {"+-3", -3.0},           {"3---a", 1.0},   {"3 - - -a", 1.0},    {"3 -- a", 5.0},
+      {"2*--a", 4.0},          {"2^- -a", 4.0},  {"2^--+-1", 0.5},     {"--a^2", 4.0},
+      {"-(--a)", -2.0},        {"1e-1--1", 1.1}, {"1 ? --2 : 3", 2.0}, {"2>--1", 1.0},
+      {"max(--1, - -a)", 2.0}, {"2*-3", -6.0},   {"-(-a)", 2.0},       {"a^-2", 0.25},
+      {"a^-2^2", 0.0625},      {"-a^2", -4.0}};
+  for (const auto& [text, value] : said) {
+    EXPECT_DOUBLE_EQ(Expression(text, of_a)(), value) << text;
+    EXPECT_DOUBLE_EQ(BoundFormula(text, of_a, &of_a.front().second)(), value) << text;
+    EXPECT_DOUBLE_EQ(TimeFormula(text, of_a)(0.0).value, value) << text;
+  }
+  EXPECT_DOUBLE_EQ(TimeFormula(std::string(10001, '-') + "a", of_a)(0.0).value, -2.0);
 }
 
 TEST(Expression, FollowsTime) {
@@ -99,6 +121,41 @@ TEST(ExpressionFault, SaysHowItIsWrittenHere) {
             "beyond what can be computed with (1.8e308)");
   // What is near to a name of the study is that.
   EXPECT_NE(fault_of("Omeg").find("did you mean \"Omega\"?"), std::string::npos);
+}
+
+TEST(ExpressionFault, SaysHowSymbolsAndOperatorsOfOtherLanguagesAreWrittenHere) {
+  EXPECT_EQ(fault_of("N0 % 3"),
+            "in the expression \"N0 % 3\": unexpected \"%\" at character 4; write \"a - b*rint(a/b - 0.5)\" for a "
+            "remainder");
+  EXPECT_EQ(fault_of("t > 1 and t < 2", true),
+            "in the expression \"t > 1 and t < 2\": unknown name \"and\" at character 7; write \"a && b\"");
+  EXPECT_EQ(fault_of("t >= 1 & t < 2", true),
+            "in the expression \"t >= 1 & t < 2\": unexpected \"&\" at character 8; write \"a && b\"");
+  EXPECT_EQ(fault_of("t => 1", true),
+            "in the expression \"t => 1\": unexpected operator \">\" at character 4; write \">=\"");
+  EXPECT_EQ(fault_of("sin N0"),
+            "in the expression \"sin N0\": unknown name \"sin\" at character 1; arguments of a function stand in "
+            "parentheses: \"sin(a)\"");
+  EXPECT_EQ(fault_of("(N0)(2)"),
+            "in the expression \"(N0)(2)\": unexpected parenthesis \"(\" at character 5; a product is written with "
+            "\"*\"");
+  EXPECT_EQ(fault_of("round(N0)"),
+            "in the expression \"round(N0)\": unknown name \"round\" at character 1; the nearest whole number is "
+            "\"rint(a)\"");
+}
+
+// Texts that are copied from a page hold a minus sign that is no hyphen; characters are counted, not bytes.
+TEST(ExpressionFault, CountsCharactersOfMoreThanOneByte) {
+  EXPECT_EQ(fault_of("−2 × 3"),
+            "in the expression \"−2 × 3\": unexpected \"−\" at character 1; a minus is written \"-\"");
+  EXPECT_EQ(fault_of("2 × 3 × 4"),
+            "in the expression \"2 × 3 × 4\": unexpected \"×\" at character 3; a product is written with \"*\"");
+}
+
+// The place of what follows a number tells of a missing product only where a value begins there.
+TEST(ExpressionFault, DoesNotAskForAProductBeforeAParenthesisThatCloses) {
+  EXPECT_EQ(fault_of("atan2(1)"),
+            "in the expression \"atan2(1)\": too few parameters for function \"atan2\" at character 8");
 }
 
 TEST(ExpressionFault, QuotesTheBeginningOfALongFormula) {

@@ -64,6 +64,7 @@ class RandomFormula {
                                                     "cosh", "tanh", "asinh", "acosh", "atanh", "log2", "log10",
                                                     "log",  "ln",   "exp",   "sqrt",  "sign",  "rint", "abs"};
     static const std::vector<std::string> lists{"min", "max", "sum", "avg"};
+    static const std::vector<std::string> signs{"-", "-", "- ", "+", "--", "- +"};
     if (depth == 0) return one_of(leaves);
     const auto part = [&] { return text(depth - 1); };
     switch (random_() % 8) {
@@ -71,10 +72,8 @@ class RandomFormula {
         return one_of(functions) + "(" + part() + ")";
       case 1:
         return "(" + part() + ")";
-      case 2: {
-        const std::string negated = part();
-        return negated.front() == '-' ? negated : "-" + negated;  // two signs in a row are refused
-      }
+      case 2:
+        return one_of(signs) + part();
       case 3:
         return part() + " ? " + part() + " : " + part();
       case 4:

@@ -1,4 +1,5 @@
 #include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/formula_spelling.hpp>
 #include <rubato/numerics/mu_parser.hpp>
 
 namespace rubato::numerics {
@@ -15,7 +16,7 @@ BoundFormula::BoundFormula(const std::string& text, const Parameters& parameters
   // muParser keeps variables by pointer to non-const; a formula that assigns was refused above.
   for (std::size_t i = 0; i < parameters.size(); ++i)
     parser.DefineVar(parameters[i].first, const_cast<double*>(values + i));
-  parser.SetExpr(text);
+  parser.SetExpr(with_single_signs(text));
   (void)parser.Eval();
 }
 
@@ -32,7 +33,7 @@ std::vector<std::size_t> parameters_used(const std::string& text, const Paramete
   std::vector<double> values(parameters.size() + 1, 1.0);
   for (std::size_t i = 0; i < parameters.size(); ++i) parser.DefineVar(parameters[i].first, &values[i]);
   if (of_time) parser.DefineVar("t", &values.back());
-  parser.SetExpr(text);
+  parser.SetExpr(with_single_signs(text));
   const auto& used = parser.GetUsedVar();
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < parameters.size(); ++i)

@@ -1,10 +1,10 @@
 #include <rubato/core/error.hpp>
 #include <rubato/core/excerpt.hpp>
 #include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/formula_spelling.hpp>
 #include <rubato/numerics/mu_parser.hpp>
 #include <rubato/numerics/time_formula.hpp>
 
-#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <regex>
@@ -39,80 +39,31 @@ std::string without_position(const std::string& message) {
   return text;
 }
 
-/// Whether a name follows a number without an operator between, as a unit does.
-bool is_after_number(const std::string& text, int place) {
-  if (place <= 0) return false;
-  const auto before = text.find_last_not_of(" \t", static_cast<std::size_t>(place) - 1);
-  if (before == std::string::npos) return false;
-  const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; };
-  std::size_t begin = before + 1;
-  while (begin > 0 && is_part(text[begin - 1])) --begin;
-  return begin <= before && (text[begin] == '.' || std::isdigit(static_cast<unsigned char>(text[begin])));
-}
-
-/// What is written otherwise here than elsewhere: how, for a name that is not known; or nothing.
-std::string other_spelling(const std::string& name, bool is_call) {
-  const auto in_lower_case = [](std::string word) {
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
-    return word;
-  };
-  const std::string word = in_lower_case(name);
-  // "1e400" is no number to muParser, and then a name.
-  if (std::isdigit(static_cast<unsigned char>(name.front())))
-    return "; as a number it is beyond what can be computed with (1.8e308)";
-  if (word == "if") return "; a choice is written \"condition ? this : else that\"";
-  if (word == "pow" || word == "power") return "; a power is written \"a^b\"";
-  if (word == "and") return "; write \"a && b\"";
-  if (word == "or") return "; write \"a || b\"";
-  if (word == "not") return "; write \"a == 0\"";
-  if (word == "e") return "; Euler's number is \"exp(1)\"";
-  if (word == "floor") return "; write \"rint(a - 0.5)\"";
-  if (word == "ceil") return "; write \"-rint(-a - 0.5)\"";
-  if (word == "heaviside" || word == "step")
-    return "; a step is written \"t > 1\", which is 1 where it is true and 0 elsewhere";
-  if (word != name && (word == "pi" || (is_call && is_function(word)))) return "; did you mean \"" + word + "\"?";
-  return "";
-}
-
-/// How what stands at a place is written here; or nothing.
-std::string syntax_hint(const std::string& text, int place, const std::string& token) {
-  if (place < 0 || static_cast<std::size_t>(place) >= text.size()) return "";
-  const auto at = static_cast<std::size_t>(place);
-  if (token == "*" && at > 0 && text[at - 1] == '*') return "; a power is written \"a^b\"";
-  if (is_after_number(text, place)) return "; a product is written with \"*\"";
-  return "";
-}
-
 /// Throws InvalidInput where the text is no formula of the parameters and, unless it is null, of t.
 void prepare(mu::Parser& parser, const std::string& text, const Parameters& parameters, double* t) {
   try {
     set_up(parser);
     for (const auto& [name, value] : parameters) parser.DefineConst(name, value);
     if (t) parser.DefineVar("t", t);
-    parser.SetExpr(text);
+    parser.SetExpr(with_single_signs(text));
     (void)parser.Eval();
     require_one_value(text, parser);
   } catch (const mu::Parser::exception_type& fault) {
-    std::string message = "in the expression \"" + excerpt(text) + "\": ";
+    const std::string message = "in the expression \"" + excerpt(text) + "\": ";
     const bool at_end = fault.GetPos() < 0 || static_cast<std::size_t>(fault.GetPos()) >= text.size();
-    const std::string where = at_end ? " at its end" : " at character " + std::to_string(fault.GetPos() + 1);
-    if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) {
-      std::vector<std::string> known{"pi"};
-      if (t) known.push_back("t");
-      for (const auto& parameter : parameters) known.push_back(parameter.first);
-      message += "unknown name \"" + excerpt(fault.GetToken()) + "\"" + where;
-      const std::size_t end = at_end ? text.size() : static_cast<std::size_t>(fault.GetPos()) + fault.GetToken().size();
-      const std::size_t next = text.find_first_not_of(" \t", end);
-      const std::string other = other_spelling(fault.GetToken(), next != std::string::npos && text[next] == '(');
-      message += is_after_number(text, fault.GetPos())
-                     ? "; units are implied (m, kg, s, N, rad): write the number alone"
-                 : other.empty() || !nearest_name(fault.GetToken(), known).empty() ? suggestion(fault.GetToken(), known)
-                                                                                   : other;
-    } else {
-      message +=
-          excerpt(without_position(fault.GetMsg())) + where + syntax_hint(text, fault.GetPos(), fault.GetToken());
-    }
-    throw InvalidInput(message);
+    const std::size_t place = at_end ? text.size() : static_cast<std::size_t>(fault.GetPos());
+    const std::string where = at_end ? " at its end" : " at character " + std::to_string(character_of(text, place));
+    if (fault.GetCode() != mu::ecUNASSIGNABLE_TOKEN)
+      throw InvalidInput(message + excerpt(without_position(fault.GetMsg())) + where + syntax_hint(text, place));
+    if (const std::string symbol = symbol_at(text, place); !symbol.empty())
+      throw InvalidInput(message + "unexpected \"" + symbol + "\"" + where + symbol_hint(symbol));
+    std::vector<std::string> known{"pi"};
+    if (t) known.push_back("t");
+    for (const auto& parameter : parameters) known.push_back(parameter.first);
+    const std::string& name = fault.GetToken();
+    const std::size_t next = text.find_first_not_of(" \t", place + name.size());
+    throw InvalidInput(message + "unknown name \"" + excerpt(name) + "\"" + where +
+                       name_hint(text, place, name, next != std::string::npos && text[next] == '(', known));
   }
 }
 

@@ -210,15 +210,18 @@ class TimeFormulaParser {
     }
   }
   int with_sign() {
-    if (takes("-")) {
-      const int node = with_sign();
-      return add(Kind::negative, node);
+    bool is_negative = false;
+    for (;;) {
+      const bool is_minus = takes("-");
+      if (!is_minus && !takes("+")) break;
+      is_negative = is_negative != is_minus;
     }
-    if (takes("+")) return with_sign();
-    const int base = primary();
-    if (!takes("^")) return base;
-    const int exponent = with_sign();
-    return add(Kind::power, base, exponent);
+    int node = primary();
+    if (takes("^")) {
+      const int exponent = with_sign();
+      node = add(Kind::power, node, exponent);
+    }
+    return is_negative ? add(Kind::negative, node) : node;
   }
   int primary() {
     if (takes("(")) {
