@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 ROOT, RUBATO = pathlib.Path(sys.argv[1]), sys.argv[2]
@@ -31,11 +32,32 @@ class Tools(unittest.TestCase):
         for name in "ab":
             result = run(ROOT / "tools/record_answers", RUBATO, self.folder / name, "--studies", "0", "--only", "single-mass")
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertEqual(result.stdout, "examples/single-mass: 0\n1 with status 0\n")
+            self.assertEqual(result.stdout, "examples/single-mass: exit 0\nruns: exit 0\n")
         self.assertTrue((self.folder / "a/examples/single-mass/results/response.csv").is_file())
-        self.assertEqual((self.folder / "a/examples/single-mass/status.csv").read_text(), "exit,messages\nexit 0,\n")
+        self.assertEqual((self.folder / "a/examples/single-mass/status.csv").read_text(), "analysis,exit,messages\nall,exit 0,\n")
         compared = subprocess.run([RUBATO, "compare", "a", "b", "--tolerance", "0"], cwd=self.folder, timeout=60)
         self.assertEqual(compared.returncode, 0)
+
+    def test_a_refused_analysis_does_not_take_the_answers_of_others_away(self):
+        # It takes one of the two analyses.
+        program = self.folder / "rubato"
+        program.write_text("""#!/bin/sh
+while [ $# -gt 0 ]; do case $1 in -o) mkdir -p $2; folder=$2;; --only) only=$2;; esac; shift; done
+case $only in
+  response) echo "time [s]" > $folder/response.csv;;
+  *) echo "refused" >&2; exit 2;;
+esac
+""")
+        program.chmod(0o755)
+        study = tomllib.loads((ROOT / "examples/single-mass/study.toml").read_text())
+        names = [analysis["name"] for analysis in study["analysis"]]
+        self.assertIn("response", names)
+        result = run(ROOT / "tools/record_answers", program, self.folder / "a", "--studies", "0", "--only", "single-mass")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        stored = self.folder / "a/examples/single-mass"
+        self.assertEqual([path.name for path in (stored / "results").iterdir()], ["response.csv"])
+        told = (stored / "status.csv").read_text().splitlines()[1:]
+        self.assertEqual(told, [f"{name},exit 0," if name == "response" else f"{name},exit 2,refused" for name in names])
 
     def test_answers_do_not_mix(self):
         (self.folder / "old").write_text("")
