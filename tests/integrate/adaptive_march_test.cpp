@@ -10,6 +10,7 @@
 #include <complex>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -368,6 +369,55 @@ TEST(TableLoad, OfManyRowsNeedsFewFactorisations) {
   EXPECT_GT(marched.report.march.steps, 1200);
   EXPECT_LT(marched.report.factorisations, changes.count / 3);
   EXPECT_GT(changes.count, 80);
+}
+
+/// An error (h/allowed)^exponent, where what is allowed falls by a twentieth at half a second: less than a controller
+/// leaves as a margin.
+class SlowlyRisingError final : public Estimator {
+ public:
+  explicit SlowlyRisingError(int exponent) : exponent_(exponent) {}
+  void start(const system::State&) override {}
+  double error(const system::State& from, const system::State&, double h) override {
+    return std::pow(h / (from.t < 0.5 ? 0.1 : 0.0951), exponent_);
+  }
+  void accept(const system::State&) override {}
+  void forget() override {}
+  int exponent() const override { return exponent_; }
+  double first_step() const override { return 0.1; }
+
+ private:
+  int exponent_;
+};
+
+// Between the rows of a table a step that was rejected by a little was tried again as it was, for ever: the next length
+// was within a fifth of the part of the way, which was kept. Of second order the controller's margin is larger.
+TEST(TableLoad, NeverTriesTheStepAgainThatWasRejected) {
+  struct Tries final : TryLog {
+    void tried(const StepTry& now) override {
+      if (last.outcome == TryOutcome::error_too_large && now.t == last.t) EXPECT_LT(now.step, last.step);
+      last = now;
+      if (++count > 1000) throw std::runtime_error("the march does not end");
+    }
+    StepTry last{};
+    long count = 0;
+  };
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = SparseMatrix(1, 1);
+  parts.loads = system::Loads({{{0}, {1.0}, model::TableLaw{{0.0, 1.0, 2.0}, {0.0, 1.0, 1.0}}}});
+  parts.coordinates = {"x"};
+  const system::LocallyNonlinear system(std::move(parts));
+  const auto stepper = make_stepper(make_method("rk4"), system);
+  for (const int exponent : {2, 3, 5}) {
+    SlowlyRisingError estimator(exponent);
+    system::State state = consistent_start(system, system.start());
+    Tries tries;
+    StepPlan plan;
+    plan.largest = 1.0;
+    const AdaptiveReport report = march(*stepper, estimator, plan, system, state, 2.0, nullptr, &tries);
+    EXPECT_EQ(report.march.end, MarchEnd::reached) << exponent;
+    EXPECT_GT(report.rejected, 0) << exponent;
+  }
 }
 
 }  // namespace

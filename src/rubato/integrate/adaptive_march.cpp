@@ -98,7 +98,9 @@ class Marcher {
     const double parts = part_ > 0.0 ? rest / part_ : HUGE_VAL;
     if (!(parts < near && std::abs(parts - std::round(parts)) < same_step * parts))
       return rest / std::ceil(rest / wanted - same_step);
-    if (wanted < worth_keeping * part_) return part_ / std::ceil(part_ / wanted - same_step);
+    // After a rejection the part is what was rejected, and the same again would be rejected for ever.
+    if (wanted < (history_.was_rejected ? 1.0 : worth_keeping) * part_)
+      return part_ / std::ceil(part_ / wanted - same_step);
     const long all = std::lround(parts);
     for (long joined = std::lround(std::floor(wanted / part_)); joined > 1; --joined)
       if (all % joined == 0) return static_cast<double>(joined) * part_;
