@@ -227,5 +227,18 @@ TEST(Spline, PassesThroughItsRowsAndErrsWithTheFourthPowerOfTheirDistance) {
   EXPECT_NEAR(coarse, std::sin(2.0) * std::pow(0.2, 4) / 384.0, 0.1 * coarse);
 }
 
+// Where the analysis ends with the table, its last row shows the speed of the spline there, and not that of a support
+// that has come to rest.
+TEST(Spline, HasItsSpeedAtTheLastRowOfATableThatEndsWithTheAnalysis) {
+  const model::TableLaw table{{0.0, 1.0, 2.0, 3.0}, {0.0, 1.0, 2.0, 3.0}, model::TableLaw::Beyond::error, ""};
+  model::SplineLaw speed = model::spline_through(table);
+  speed.order = 1;
+  for (const model::Side side : {model::Side::left, model::Side::right})
+    EXPECT_NEAR(model::value(speed, 3.0, side), 1.0, 1e-15);
+  speed.holds_beyond = true;  // it rests from there on
+  EXPECT_NEAR(model::value(speed, 3.0, model::Side::left), 1.0, 1e-15);
+  EXPECT_EQ(model::value(speed, 3.0, model::Side::right), 0.0);
+}
+
 }  // namespace
 }  // namespace rubato::analysis

@@ -46,11 +46,12 @@ namespace {
 double value_of(const SplineLaw& spline, double t, Side side) {
   const auto& x = spline.times;
   const bool before = side == Side::right ? t < x.front() : t <= x.front();
-  const bool after = side == Side::right ? t >= x.back() : t > x.back();
+  // Where nothing is known beyond the rows the analysis ends with them, and the last row is still of the spline.
+  const bool after = spline.holds_beyond && (side == Side::right ? t >= x.back() : t > x.back());
   if (before || after) return spline.order > 0 ? 0.0 : before ? spline.values.front() : spline.values.back();
   const auto end =
       side == Side::right ? std::upper_bound(x.begin(), x.end(), t) : std::lower_bound(x.begin(), x.end(), t);
-  const auto i = static_cast<std::size_t>(end - x.begin()) - 1;
+  const auto i = std::min(static_cast<std::size_t>(end - x.begin()), x.size() - 1) - 1;
   const double h = x[i + 1] - x[i], s = t - x[i], r = x[i + 1] - t;
   const double m0 = spline.curvatures[i], m1 = spline.curvatures[i + 1], y0 = spline.values[i],
                y1 = spline.values[i + 1];
