@@ -236,9 +236,9 @@ def _transient(study, model, analysis, table, pairs):
     moving = [i for i, _ in model.moving]
     for i in moving:
         if i in observed:
-            size = max(numpy.max(numpy.abs(rows["q"][:, i])), 1e-300)
-            checks.append((f"{model.names[i]} (moved)", numpy.max(numpy.abs(got["q"][:, i] - rows["q"][:, i])) / size,
-                           1e-9))
+            for key, header in zip(("q", "v", "a"), _columns_of(model, model.names[i])):
+                size = max(numpy.max(numpy.abs(rows[key][:, i])), 1e-300)
+                checks.append((f"{header} (moved)", numpy.max(numpy.abs(got[key][:, i] - rows[key][:, i])) / size, 1e-9))
     contacts = bool(model.sliders or model.stops)
     method = analysis.get("method", "generalized_alpha")
     method = method["name"] if isinstance(method, dict) else method
