@@ -40,6 +40,7 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
   fmt::print("{}\n", table.table);
   for (const std::string& gap : table.gaps) fmt::print("* {}\n", gap);
   for (const std::string& note : table.notes) fmt::print("  {}\n", note);
+  if (columns.empty()) return table.gaps.empty();
   std::size_t width = 6, told = 0;
   for (const ColumnDifference& column : columns) width = std::max(width, column.column.size());
   fmt::print("  {:<{}}  {:>9}  {:>9}  at\n", "column", width, "relative", "largest");
@@ -53,7 +54,7 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
     fmt::print("  {} more column{}, {}\n", columns.size() - told, columns.size() - told == 1 ? "" : "s",
                next.relative == 0.0 ? "equal" : fmt::format("at most {:.2e}; --all tells them", next.relative));
   }
-  return table.gaps.empty() && (columns.empty() || is_within(columns.front(), options.tolerance));
+  return table.gaps.empty() && is_within(columns.front(), options.tolerance);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 """`rubato compare` on tables written by hand. Usage: compare_command_test.py RUBATO."""
+import fcntl
 import math
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -98,6 +100,62 @@ class Compare(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assert_line(r'^\* 4 and 5 rows, of which 3 are of the same "angular_frequency \[rad/s\]"$', result.stdout)
         self.assert_line(r"^\* x\.amplitude \[m\] +1\.11e-01 +1\.00e\+00  row 4$", result.stdout)
+
+    def test_modes_are_matched_by_their_numbers_and_curves_by_the_parameter(self):
+        modes = "limit,mode,angular_frequency [rad/s]"
+        self.write("a/modes.csv", modes, "free,1,2.0", "free,2,5.0")
+        self.write("b/modes.csv", modes, "free,1,2.2", "free,2,5.0", "free,3,8.0")
+        curve = "N0,angular_frequency [rad/s],objective [m]"
+        self.write("a/curve.csv", curve, "1,7,0.5", "2,8,0.4")
+        self.write("b/curve.csv", curve, "1,7.5,0.5", "1.5,7,0.3", "2,8,0.4")
+        result = self.compare()
+        self.assertEqual(result.returncode, 1)
+        self.assert_line(r'^\* 2 and 3 rows, of which 2 are of the same "mode"$', result.stdout)
+        self.assert_line(r'^\* 2 and 3 rows, of which 2 are of the same "N0"$', result.stdout)
+        self.assert_line(r"^\* angular_frequency \[rad/s\] +2\.50e-02 +2\.00e-01  row 1$", result.stdout)
+        self.assert_line(r"^\* angular_frequency \[rad/s\] +6\.25e-02 +5\.00e-01  row 1$", result.stdout)
+
+    def test_keys_that_differ_by_round_off_are_the_same(self):
+        header = "N0,angular_frequency [rad/s],x.amplitude [m]"
+        self.write("a/frf.csv", header, "0.3,1,5", "0.3,2,6", "0.4,2,7")
+        self.write("b/frf.csv", header, "0.30000000000000004,1,5", "0.4,2.0000000000000004,7", "0.30000000000000004,2,6", "0.5,2,6")
+        result = self.compare()
+        self.assert_line(r'^\* 3 and 4 rows, of which 3 are of the same', result.stdout)
+        self.assert_line(r"^  x\.amplitude \[m\] +0\.00e\+00", self.compare("--all").stdout)
+
+    # They were matched pair by pair: 100,000 rows took half a minute.
+    def test_large_sweeps_of_different_sizes_take_seconds(self):
+        header = "N0,angular_frequency [rad/s],x.amplitude [m]"
+        rows = [f"{i // 100},{i % 100},{i}" for i in range(100000)]
+        self.write("a/frf.csv", header, *rows)
+        self.write("b/frf.csv", header, *reversed(rows[1:]))
+        result = subprocess.run([RUBATO, "compare", "a", "b"], capture_output=True, text=True, cwd=self.folder,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (10, 11)))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("100000 and 99999 rows, of which 99999 are of the same", result.stdout)
+
+    def test_a_folder_in_which_a_run_writes_is_refused(self):
+        self.write("a/t.csv", "w", "1")
+        self.write("b/deep/t.csv", "w", "1")
+        with open(self.folder / "b/deep/.rubato-lock", "w") as lock:
+            lock.write("4711 \n")
+            lock.flush()
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            result = self.compare()
+            self.assertEqual((result.returncode, result.stdout), (2, ""))
+            self.assertIn("another run is writing here (process 4711); its tables are not whole yet", result.stderr)
+        result = self.compare()  # nobody holds it any more
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("only the first has this table", result.stdout)
+
+    def test_what_a_killed_run_has_left_is_told(self):
+        for folder in "ab":
+            self.write(f"{folder}/t.csv", "w", "1")
+        self.write("b/t.csv.partial", "w", "1")
+        result = self.compare()
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stdout.splitlines()[:3], [
+            "t.csv: equal", "t.csv.partial", "* a run of the second ended before this table was whole"])
 
     def test_histories_of_other_times_are_interpolated(self):
         for folder, interval in (("a", 0.05), ("b", 0.01)):

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace rubato::io {
@@ -188,26 +189,75 @@ class Comparison {
       for (std::size_t i = 0; i < a_.rows; ++i) rows.emplace_back(i, i);
       return rows;
     }
-    std::vector<const ResultColumn*> first, second;
-    const bool has_frequency = a_.find("angular_frequency [rad/s]") && b_.find("angular_frequency [rad/s]");
-    for (const ResultColumn& column : a_.columns) {
-      const ResultColumn* other = b_.find(column.name);
-      if (!other) break;
-      first.push_back(&column);
-      second.push_back(other);
-      if (!has_frequency || column.name == "angular_frequency [rad/s]") break;
+    const std::vector<const ResultColumn*> first = key_columns();
+    std::vector<const ResultColumn*> second;
+    for (const ResultColumn* column : first) second.push_back(b_.find(column->name));
+    // By the words of the keys, which are mostly the same; then what is left by the values nearby of the last.
+    std::unordered_map<std::string, std::vector<std::size_t>> by_words;
+    std::vector<std::size_t> partners(a_.rows, b_.rows), left;
+    if (!first.empty())
+      for (std::size_t j = b_.rows; j-- > 0;) by_words[words_of(second, j)].push_back(j);
+    for (std::size_t i = 0; i < a_.rows && !first.empty(); ++i) {
+      const auto found = by_words.find(words_of(first, i));
+      if (found == by_words.end() || found->second.empty()) continue;
+      partners[i] = found->second.back();
+      found->second.pop_back();
     }
-    std::vector<bool> is_taken(b_.rows, false);
-    for (std::size_t i = 0; i < a_.rows && !first.empty(); ++i)
-      for (std::size_t j = 0; j < b_.rows; ++j)
-        if (!is_taken[j] && has_same_key(first, i, second, j)) {
-          is_taken[j] = true;
-          rows.emplace_back(i, j);
-          break;
-        }
+    for (const auto& [words, places] : by_words) left.insert(left.end(), places.begin(), places.end());
+    if (!first.empty() && !first.back()->is_text() && !second.back()->is_text())
+      match_nearby(first, second, std::move(left), partners);
+    for (std::size_t i = 0; i < a_.rows; ++i)
+      if (partners[i] < b_.rows) rows.emplace_back(i, partners[i]);
     result_.gaps.push_back(fmt::format("{} and {} rows, of which {} are of the same {}", a_.rows, b_.rows, rows.size(),
                                        first.empty() ? "place" : "\"" + first.back()->name + "\""));
     return rows;
+  }
+
+  /// Those by which rows of tables with unequal numbers of them are matched: what was asked for, not what was found.
+  /// Frequencies are found in tables of modes (`mode` numbers them) and of damper curves (with an `objective [m]`).
+  std::vector<const ResultColumn*> key_columns() const {
+    const auto both_have = [&](const char* name) { return a_.find(name) && b_.find(name); };
+    const char* const frequency = "angular_frequency [rad/s]";
+    const bool is_curve = std::any_of(a_.columns.begin(), a_.columns.end(),
+                                      [](const ResultColumn& one) { return one.name.rfind("objective", 0) == 0; });
+    const std::string last = both_have("mode") ? "mode" : both_have("peak") ? "peak" : frequency;
+    const bool has_last = both_have(last.c_str());
+    std::vector<const ResultColumn*> keys;
+    for (const ResultColumn& column : a_.columns) {
+      if (!b_.find(column.name) || (is_curve && column.name == frequency)) break;
+      keys.push_back(&column);
+      if (!has_last || column.name == last) break;
+    }
+    return keys;
+  }
+
+  static std::string words_of(const std::vector<const ResultColumn*>& keys, std::size_t row) {
+    std::string words;
+    for (const ResultColumn* column : keys) words += text_at(*column, row) + '\n';
+    return words;
+  }
+
+  /// Partners of the rows of the first table that have none, among those of the second that are left.
+  static void match_nearby(const std::vector<const ResultColumn*>& first,
+                           const std::vector<const ResultColumn*>& second, std::vector<std::size_t> left,
+                           std::vector<std::size_t>& partners) {
+    const std::size_t none = second.back()->numbers.size();
+    const auto& values = second.back()->numbers;
+    left.erase(std::remove_if(left.begin(), left.end(), [&](std::size_t j) { return std::isnan(values[j]); }),
+               left.end());
+    std::sort(left.begin(), left.end(),
+              [&](std::size_t i, std::size_t j) { return std::pair(values[i], i) < std::pair(values[j], j); });
+    for (std::size_t i = 0; i < partners.size() && !left.empty(); ++i) {
+      const double value = first.back()->numbers[i];
+      if (partners[i] < none || std::isnan(value)) continue;
+      const double reach = 2.0 * same_place * std::abs(value);
+      auto near = std::lower_bound(left.begin(), left.end(), value - reach,
+                                   [&](std::size_t j, double least) { return values[j] < least; });
+      while (near != left.end() && values[*near] <= value + reach && !has_same_key(first, i, second, *near)) ++near;
+      if (near == left.end() || values[*near] > value + reach) continue;
+      partners[i] = *near;
+      left.erase(near);
+    }
   }
 
   static bool has_same_key(const std::vector<const ResultColumn*>& a, std::size_t i,
@@ -243,6 +293,15 @@ std::vector<TableComparison> compare_results(const std::filesystem::path& a, con
   all.insert(second.begin(), second.end());
   std::vector<TableComparison> result;
   for (const auto& table : all) {
+    if (table.extension() == ".partial") {
+      TableComparison unfinished;
+      unfinished.table = table.string();
+      for (const auto& [tables, which] : {std::pair{&first, "first"}, std::pair{&second, "second"}})
+        if (std::binary_search(tables->begin(), tables->end(), table))
+          unfinished.gaps.push_back(fmt::format("a run of the {} ended before this table was whole", which));
+      result.push_back(std::move(unfinished));
+      continue;
+    }
     const bool in_first = std::binary_search(first.begin(), first.end(), table);
     if (in_first && std::binary_search(second.begin(), second.end(), table)) {
       result.push_back(compare_tables(table.string(), read_result_table(a / table), read_result_table(b / table)));

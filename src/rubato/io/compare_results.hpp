@@ -31,8 +31,8 @@ struct TableComparison {
 ///
 /// Rows are matched one by one where both have as many. Histories (a first column `time [s]` that rises, and numbers
 /// only) of different times are compared at the times of the shorter table, the other one interpolated by straight
-/// lines. Of other tables with unequal numbers of rows those are compared that agree in the first column, or in all up
-/// to `angular_frequency [rad/s]`.
+/// lines. Of other tables with unequal numbers of rows those are compared that agree in what was asked for: the first
+/// column, or all up to `angular_frequency [rad/s]`, of modes up to `mode`, of damper curves up to the parameter.
 ///
 /// A difference is relative to the largest value of the column in either table, or to 1e-13 of the largest of its
 /// quantity in the table (`position [m]` of all), below which a column is round-off. Phases differ by less than pi.

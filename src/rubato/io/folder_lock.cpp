@@ -33,9 +33,14 @@ std::string owner_in(int file) {
   return "process " + number + (host.empty() || host == host_name() ? "" : " on " + host);
 }
 
+std::string writing(const std::string& owner) {
+  return "another run is writing here" + (owner.empty() ? "" : " (" + owner + ")");
+}
+
 /// 0, or the number of the error.
-int try_lock(int file) {
-  while (::flock(file, LOCK_EX | LOCK_NB) != 0)
+/// @param kind  LOCK_EX, or LOCK_SH to see whether there is one
+int try_lock(int file, int kind) {
+  while (::flock(file, kind | LOCK_NB) != 0)
     if (errno != EINTR) return errno;
   return 0;
 }
@@ -51,13 +56,12 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : path_(folder / ".r
     if (file_ < 0)
       throw InvalidInput(fmt::format("{}: nothing can be written there: {}; choose another (-o DIR)", folder.string(),
                                      std::strerror(errno)));
-    const int fault = try_lock(file_);
+    const int fault = try_lock(file_, LOCK_EX);
     if (fault == EWOULDBLOCK) {
       const std::string owner = owner_in(file_);
       ::close(file_);
       throw OutputError(
-          fmt::format("{}: another run is writing here{}; wait for its end, or choose another folder (-o DIR)",
-                      folder.string(), owner.empty() ? "" : " (" + owner + ")"));
+          fmt::format("{}: {}; wait for its end, or choose another folder (-o DIR)", folder.string(), writing(owner)));
     }
     if (fault != 0)
       warning_ = fmt::format("{}: this file system keeps no locks ({}): see that no other run writes there",
@@ -99,6 +103,14 @@ void FolderLock::note_owner() {
 std::string FolderLock::loss() const {
   if (!folder_known_.is_there()) return "was deleted or moved";
   return file_known_.is_there() ? "" : "was emptied";
+}
+
+std::string writer_of(const std::filesystem::path& folder) {
+  const int file = ::open((folder / ".rubato-lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return {};
+  const std::string writer = try_lock(file, LOCK_SH) == EWOULDBLOCK ? writing(owner_in(file)) : "";
+  ::close(file);
+  return writer;
 }
 
 }  // namespace rubato::io

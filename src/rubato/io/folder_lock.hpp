@@ -33,4 +33,8 @@ class FolderLock {
   KnownFile folder_known_, file_known_;
 };
 
+/// Who writes into a folder of results now, for a message: "another run is writing here (process 1234)"; empty where
+/// nobody does, as far as locks tell.
+std::string writer_of(const std::filesystem::path& folder);
+
 }  // namespace rubato::io

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/io/folder_lock.hpp>
 #include <rubato/io/result_table.hpp>
 
 #include <fmt/format.h>
@@ -86,13 +87,23 @@ std::vector<fs::path> result_tables(const fs::path& folder) {
     throw InvalidInput(
         fmt::format("{}: there is no such folder of results{}", folder.string(),
                     fs::is_regular_file(folder, fault) ? "; name the folder that the file lies in" : ""));
+  const auto refuse_to_read_beside_a_run = [](const fs::path& place) {
+    if (const std::string writer = writer_of(place); !writer.empty())
+      throw InvalidInput(fmt::format("{}: {}; its tables are not whole yet", place.string(), writer));
+  };
+  refuse_to_read_beside_a_run(folder);
   std::vector<fs::path> found;
   for (auto entry = fs::recursive_directory_iterator(folder, fault); entry != fs::recursive_directory_iterator();
        entry.increment(fault)) {
     if (fault) break;
-    if (entry->is_directory() && entry->path().filename() == "former") entry.disable_recursion_pending();
-    if (entry->is_regular_file() && entry->path().extension() == ".csv")
-      found.push_back(entry->path().lexically_relative(folder));
+    if (entry->is_directory() && entry->path().filename() == "former")
+      entry.disable_recursion_pending();
+    else if (entry->is_directory())
+      refuse_to_read_beside_a_run(entry->path());
+    if (!entry->is_regular_file()) continue;
+    const fs::path file = entry->path().lexically_relative(folder);
+    const bool is_partial = file.extension() == ".partial" && file.stem().extension() == ".csv";
+    if (file.extension() == ".csv" || is_partial) found.push_back(file);
   }
   if (fault) throw InvalidInput(fmt::format("{}: cannot be read: {}", folder.string(), fault.message()));
   if (found.empty())

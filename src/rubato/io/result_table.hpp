@@ -26,8 +26,9 @@ struct ResultTable {
 /// Throws InvalidInput for a file that cannot be read, or whose rows are not as long as its header.
 ResultTable read_result_table(const std::filesystem::path& file);
 
-/// The tables in a folder and those below it, as paths relative to it, in order; without what a run moved to `former/`.
-/// Throws InvalidInput for what is no folder or has none.
+/// The tables in a folder and those below it, as paths relative to it, in order; without what a run moved to `former/`,
+/// with what a run that was killed left of others (`response.csv.partial`).
+/// Throws InvalidInput for what is no folder, has no tables, or is being written by a run.
 std::vector<std::filesystem::path> result_tables(const std::filesystem::path& folder);
 
 }  // namespace rubato::io
