@@ -143,6 +143,15 @@ Index MechanismEquations::worst_leak(const Vector& correction, double& apart) co
   return worst;
 }
 
+double MechanismEquations::gap_norm(const Vector& constraint) const {
+  double squared = 0.0;
+  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
+    const double gap = constraint[static_cast<Index>(r)];
+    if (row_seen_[r] > 0.0) squared += gap * gap / row_seen_[r];
+  }
+  return std::sqrt(squared);
+}
+
 int MechanismEquations::hardly_held_rows() const {
   constexpr double left = 10.0 * share;
   int count = 0;

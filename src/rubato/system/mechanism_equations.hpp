@@ -57,6 +57,10 @@ class MechanismEquations {
   /// The row that E lets stay apart most after a correction of the multipliers, and by how much [m], [rad].
   /// @param correction  as solve() wrote it [c]
   Index worst_leak(const Vector& correction, double& apart) const;
+  /// How far constraints are apart, each in the motion that closes it alone, by the diagonal of M [m sqrt(kg)]; rows
+  /// as the last matrix had them.
+  /// @param constraint  g [c]
+  double gap_norm(const Vector& constraint) const;
   /// How many rows leave so little that E weighs a tenth and more: redundant, or in a configuration where they are.
   int hardly_held_rows() const;
   /// Whether the matrix is symmetric whatever the state: in space it is not.

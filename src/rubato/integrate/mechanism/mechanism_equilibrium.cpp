@@ -38,8 +38,12 @@ class Search {
     next_ = given.q;
     extent_ = extent_of(mechanism_, given.q);
     (void)locks_.meet(found_.state, extent_);
+    sizes_.resize(n);
+    for (Index i = 0; i < n; ++i)
+      sizes_[i] = mechanism_.model().is_rotation[static_cast<std::size_t>(i)] != 0 ? 1.0 : extent_;
+    inertia_ = mechanism_.mass().diagonal();
     reference_ =
-        mechanism_.reference() > 0.0 ? mechanism_.reference() : extent_ * std::sqrt(mechanism_.mass().diagonal().sum());
+        mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(sizes_.dot(inertia_.cwiseProduct(sizes_)));
   }
 
   /// Downhill from a configuration that may be far away.
@@ -175,12 +179,13 @@ class Search {
   static constexpr double shorter_with_locks = 0.2;
   static constexpr double settled = 1e-6;  // a shift that leaves a linear convergence of soft modes to be waited for
 
-  /// Stiffness over mass of the mechanism in an arbitrary direction [1/s2], from a small motion along it.
+  /// Stiffness over mass of the mechanism in an arbitrary direction [1/s2], from a small motion along it: shifts by
+  /// shares of the extent and turns by those of a radian, so that the units of the model are nothing to it.
   double stiffness_per_mass() {
     const Index n = mechanism_.size();
     Vector along(n), before(n), after(n);
-    for (Index i = 0; i < n; ++i) along[i] = std::sin(1.0 + 2.4 * static_cast<double>(i));
-    const double step = 1e-6 * extent_;
+    for (Index i = 0; i < n; ++i) along[i] = sizes_[i] * std::sin(1.0 + 2.4 * static_cast<double>(i));
+    constexpr double step = 1e-6;
     system::State moved = found_.state;
     equations_.go_to(found_.state, model::Side::right);
     equations_.residual(before, constraint_);
@@ -191,12 +196,15 @@ class Search {
     const double mass = along.dot(product_);
     const double stiffness = std::abs((after - before).dot(along)) / step;
     equations_.external_force(after);
-    const double loads = after.norm() * along.norm() / extent_;  // where only loads and constraints hold it
+    const double loads = after.cwiseProduct(along).norm();  // where only loads and constraints hold it
     const double most = std::max(stiffness, loads);
     return most > 0.0 ? most / mass : 1.0;  // where nothing acts any scale serves
   }
 
-  double force_norm() const { return std::hypot(force_.norm(), scale_ * constraint_.norm()); }
+  /// What is left of the equations, in the mass norm of the accelerations that it would make [m/s2 sqrt(kg)].
+  double force_norm() const {
+    return std::hypot(force_.cwiseQuotient(inertia_.cwiseSqrt()).norm(), scale_ * equations_.gap_norm(constraint_));
+  }
 
   /// The share of the correction that turns and shifts nothing too far.
   double longest_share() const {
@@ -221,6 +229,8 @@ class Search {
   MetLocks locks_;
   MechanismEquilibrium found_;
   Vector force_, product_, constraint_, next_;
+  Vector sizes_;    // what a unit of a coordinate is compared with: the extent, or a radian [n]
+  Vector inertia_;  // diagonal of M [n]
   double extent_ = 1.0, reference_ = 1.0, scale_ = 1.0;
 };
 

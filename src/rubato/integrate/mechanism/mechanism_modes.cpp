@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rubato::integrate {
 namespace {
@@ -14,20 +15,43 @@ constexpr Index most_unsymmetric = 400;  // seconds
 constexpr double neutral = 100.0;        // of round-off: what the tolerance of an equilibrium leaves of omega^2 = 0
 constexpr double reduction_error = 8.0;  // of products with N, in units of that of the entries of K
 
-/// An orthonormal basis of the motions that the constraints leave [n x freedoms].
-Matrix motions_left(const SparseMatrix& jacobian) {
+/// A basis of the motions that the constraints leave, orthonormal by the diagonal of M: lengths and angles are then of
+/// one kind, whatever the units of the model [n x freedoms].
+Matrix motions_left(const SparseMatrix& jacobian, const Vector& inertia) {
   const Index n = jacobian.cols();
-  if (jacobian.rows() == 0) return Matrix::Identity(n, n);
-  Matrix rows = jacobian;
+  const Vector unit = inertia.cwiseSqrt().cwiseInverse();
+  if (jacobian.rows() == 0) return unit.asDiagonal();
+  Matrix rows = jacobian * unit.asDiagonal();
   for (Index i = 0; i < rows.rows(); ++i)  // a length beside an angle must not look like nothing
     if (const double size = rows.row(i).norm(); size > 0.0) rows.row(i) /= size;
   Eigen::ColPivHouseholderQR<Matrix> decomposition(rows.transpose());
   decomposition.setThreshold(1e-9);
   const Matrix all = decomposition.householderQ() * Matrix::Identity(n, n);
-  return all.rightCols(n - decomposition.rank());
+  return unit.asDiagonal() * all.rightCols(n - decomposition.rank());
 }
 
 Matrix reduced(const SparseMatrix& matrix, const Matrix& basis) { return basis.transpose() * (matrix * basis); }
+
+/// What round-off of the multipliers leaves of N^T K N, entry by entry: each is off by a share of the largest, compared
+/// by the accelerations that they make. A part that nothing presses has no stiffness but this.
+/// @param linear  at the state, with its multipliers
+Matrix noise_of_multipliers(system::MechanismEquations& equations, const Vector& multiplier,
+                            const system::MechanismEquations::Linearised& linear, const Matrix& basis,
+                            const Vector& inertia) {
+  constexpr double share = 16.0 * std::numeric_limits<double>::epsilon();
+  const SparseMatrix rows = linear.jacobian * inertia.cwiseSqrt().cwiseInverse().asDiagonal();
+  Vector seen = Vector::Zero(rows.rows());
+  for (Index i = 0; i < rows.outerSize(); ++i)
+    for (SparseMatrix::InnerIterator entry(rows, i); entry; ++entry) seen[entry.row()] += entry.value() * entry.value();
+  seen = seen.cwiseSqrt();
+  const double largest = seen.size() > 0 ? seen.cwiseProduct(multiplier).cwiseAbs().maxCoeff() : 0.0;
+  if (!(largest > 0.0)) return Matrix::Zero(basis.cols(), basis.cols());
+  Vector off = Vector::Zero(multiplier.size());
+  for (Index r = 0; r < off.size(); ++r)
+    if (seen[r] > 0.0) off[r] = largest / seen[r];
+  const SparseMatrix change = equations.linearised(multiplier + off).stiffness - linear.stiffness;
+  return share * reduced(change.cwiseAbs(), basis.cwiseAbs());
+}
 
 SparseMatrix symmetric(const Matrix& matrix) {
   return SparseMatrix((0.5 * (matrix + matrix.transpose())).sparseView(0.0, 0.0));
@@ -47,11 +71,15 @@ MechanismModes modes_about(system::MechanismEquations& equations, const system::
   const auto& mechanism = equations.mechanism();
   equations.go_to(state, model::Side::right);
   const auto linear = equations.linearised(state.multiplier);
-  const Matrix basis = motions_left(linear.jacobian);
+  const Vector inertia = mechanism.mass().diagonal();
+  const Matrix basis = motions_left(linear.jacobian, inertia);
   MechanismModes result;
   result.freedoms = basis.cols();
   if (result.freedoms == 0) return result;
-  const Matrix tangent = reduced(linear.stiffness, basis);
+  const Matrix noise = noise_of_multipliers(equations, state.multiplier, linear, basis, inertia);
+  Matrix tangent = reduced(linear.stiffness, basis);
+  for (Index i = 0; i < tangent.size(); ++i)
+    if (std::abs(tangent.data()[i]) <= noise.data()[i]) tangent.data()[i] = 0.0;
   result.skew = 0.5 * (tangent - tangent.transpose()).norm() / std::max(tangent.norm(), 1e-300);
   const Matrix mass = reduced(mechanism.mass(), basis), damping = reduced(linear.damping, basis);
   if (result.skew > round_off && result.freedoms <= most_unsymmetric) {
