@@ -114,8 +114,8 @@ def joints(march, state, t, kin, a, mu):
             if j.type == "screw":       # of the way along the axis, on which no law acts
                 row[f"{j.name}.law_force [N]"] = 0.0
             row[f"{j.name}.law_{what} {unit}"] = march.law_force.get(j.name, 0.0)
-    for d in march.dry:
-        if d.resting:
+    for d in march.dry + march.immobile:
+        if d.resting or d in march.immobile:
             force = np.zeros(len(d.maps))
         elif d.going is None:
             force = holds[id(d)]
@@ -161,7 +161,7 @@ def transient_row(march, state, t, works):
     a, mu, _ = march.instant(state, t, kin)
     row = {"time [s]": t}
     row.update(motion(march, state, a))
-    shared = march.undetermined
+    shared = march.undetermined or march.immobile
     row.update(joints(march, state, t, kin, a, mu))
     if shared:      # of reactions that joints share nothing is asked
         row.update({k: np.nan for k in row if k.endswith("[N]") or k.endswith("[N m]")})

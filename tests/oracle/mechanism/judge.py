@@ -9,6 +9,7 @@ import numpy as np
 from mechanism import Mechanism, Refused
 from mechanism.columns import transient_row
 from mechanism.march import March
+from mechanism.rest import eigenvalues, equilibrium, equilibrium_at, let_go, march_scale, modes_about, state_of_row
 
 # errors of accelerations, reactions and energies over those of positions and velocities
 LOOSER = {"m": 1, "rad": 5, "m/s": 20, "rad/s": 20, "m/s2": 200, "rad/s2": 200, "N": 200, "N m": 200, "J": 20}
@@ -91,8 +92,7 @@ def transient(study, analysis, folder, start=None):
     theirs = {k: v[few] if isinstance(v, np.ndarray) else v for k, v in theirs.items()}
     times = theirs["time [s]"]
     if start is None and analysis.get("initial") == "static":
-        from mechanism.rest import equilibrium
-        start = equilibrium(march, velocities=True)
+        start = told_equilibrium(study, march, folder, velocities=True)
     pairs = march.run(duration, times, start=start, columns=transient_row)
     ours = {k: np.array([p[0].get(k, np.nan) for p in pairs]) for k in pairs[0][0]}
     return march, model, ours, theirs, pairs
@@ -142,11 +142,25 @@ def thin(times, most=40):
     return np.arange(n) if n <= most else np.unique(np.round(np.linspace(0, n - 1, most)).astype(int))
 
 
+def told_equilibrium(study, march, folder, velocities=False):
+    """The equilibrium that the study's static analysis tells, held to be one; where none is told, or it is none, our own."""
+    for analysis in study.raw["analysis"]:
+        table = pathlib.Path(folder) / f"{analysis['name']}.csv"
+        if analysis["type"] != "static" or not table.exists():
+            continue
+        told = state_of_row(march, {k: v[0] for k, v in read_csv(table).items()})
+        if told is not None:
+            try:
+                return let_go(march, equilibrium_at(march, told), velocities)
+            except (Refused, np.linalg.LinAlgError):
+                march.__init__(march.model, march.rtol)
+    return equilibrium(march, velocities)
+
+
 def judge_static(study, analysis, folder):
-    from mechanism.columns import transient_row
-    from mechanism.rest import equilibrium
+    """What is told must be in balance: of several equilibria any will do, and of those that a motion does not leave."""
     march = March(Mechanism(study))
-    state = equilibrium(march)
+    state = told_equilibrium(study, march, folder)
     ours = transient_row(march, state, 0.0, np.zeros(4))[0]
     theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")
     one = {k: np.array([v]) for k, v in ours.items()}
@@ -160,12 +174,11 @@ def judge_static(study, analysis, folder):
 
 
 def judge_modes(study, analysis, folder):
-    from mechanism.rest import eigenvalues, equilibrium, modes_about
     model = Mechanism(study)
     march = March(model)
     about, at, coarse = analysis.get("about", "given"), 0.0, 1.0
     if about == "static":
-        state = equilibrium(march)
+        state = told_equilibrium(study, march, folder)
     elif about == "given":
         state = march.begin()
     else:
@@ -174,7 +187,7 @@ def judge_modes(study, analysis, folder):
         transient_of = next(a for a in study.raw["analysis"] if a["name"] == about["analysis"])
         duration = study.number(transient_of["duration"])
         at = study.number(about.get("time", duration))
-        start = equilibrium(march, velocities=True) if transient_of.get("initial") == "static" else None
+        start = told_equilibrium(study, march, folder, velocities=True) if transient_of.get("initial") == "static" else None
         state = march.run(duration, [at], start=start)[0][1]
         coarse = 1e6 * 100 * study.number(transient_of["step"]["tolerance"])
     C, K, G, Z, out = modes_about(march, state, at)
@@ -185,8 +198,12 @@ def judge_modes(study, analysis, folder):
     s = theirs["eigenvalue_real [1/s]"] + 1j * theirs["eigenvalue_imaginary [rad/s]"]
     if len(ours) == 0:
         return ([Finding(name, "eigenvalue", np.inf, 0.0, "no motion is left")] if len(s) else []), errors, march
-    # what round-off leaves of an eigenvalue: a share of the stiffest motion
-    fast = np.max(np.abs(ours))
+    # what round-off leaves of an eigenvalue: a share of the stiffest motion, or of what the forces would make
+    Q = march.applied(state, at)
+    mu = march.instant(state, at)[1]
+    forces = np.linalg.norm(march.Linv @ Q) + np.linalg.norm(march.Linv @ (G.T @ mu))
+    natural = np.sqrt(forces / march_scale(march))
+    fast = max(np.max(np.abs(ours)), natural)
     used = np.zeros(len(ours), bool)
     worst = 0.0
     for k, x in enumerate(s):
@@ -221,7 +238,7 @@ def judge_modes(study, analysis, folder):
     k2, c2 = Z.T @ K @ Z, Z.T @ C @ Z
     worst, norm, gap = 0.0, 0.0, 0.0
     for x, y, t in zip(s, X.T, T.T):
-        terms = abs(x) ** 2 * np.linalg.norm(t) + abs(x) * np.linalg.norm(c2 @ t) + np.linalg.norm(k2, 2) * np.linalg.norm(t) * 1e-3
+        terms = abs(x) ** 2 * np.linalg.norm(t) + abs(x) * np.linalg.norm(c2 @ t) + (np.linalg.norm(k2, 2) + natural**2) * np.linalg.norm(t) * 1e-3
         if terms > 0:
             worst = max(worst, np.linalg.norm(x * x * t + x * (c2 @ t) + k2 @ t) / terms)
         norm = max(norm, abs(np.vdot(y, model.M @ y).real - 1))

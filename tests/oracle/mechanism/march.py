@@ -22,7 +22,7 @@ class March(ReadsFriction, Instant, Events):
         L = np.linalg.cholesky(m.M)
         self.Linv = np.linalg.inv(L)
         self.box = self._size()
-        self.dry, self.locks = [], []
+        self.dry, self.immobile, self.locks = [], [], []
         self.events = []
         self.lost = 0.0
         self.window = (0.0, math.inf)
@@ -130,24 +130,29 @@ class March(ReadsFriction, Instant, Events):
         here = m.way_map @ m.scalars(state)[0] + m.way_constant
         if not self.locks:
             self.locks = [Lock(j, math.copysign(1.0, j.lock["at"] - here[j.way])) for j in m.joints if j.lock is not None]
-        self._refuse_immobile(state)
+        self._leave_out_immobile(state)
         for d in self.dry:
             d.resting = False
         return state
 
-    def _refuse_immobile(self, state):
-        """What a dry joint carries that the other joints leave no motion is not determined."""
+    def _leave_out_immobile(self, state):
+        """A dry joint that the other joints leave no motion rubs nowhere; what it carries is not determined."""
         kin = self.model.scalars(state)
         G = self.rows(state, 0.0, kin)[0]
         if not self.dry or len(G) == 0:
             return
         basis = np.linalg.svd(self.Linv @ G.T, full_matrices=False)
         span = basis[0][:, basis[1] > 1e-9 * basis[1][0]]
-        for d in self.dry:
-            for line in d.maps @ kin[1]:
-                seen = self.Linv @ line
-                if np.linalg.norm(seen - span @ (span.T @ seen)) < 1e-6 * np.linalg.norm(seen):
-                    raise Refused("a dry joint that the others leave no motion")
+        for d in list(self.dry):
+            seen = self.Linv @ (d.maps @ kin[1]).T
+            left = np.linalg.norm(seen - span @ (span.T @ seen), axis=0) < 1e-6 * np.linalg.norm(seen, axis=0)
+            if left.all():
+                self.dry.remove(d)
+                self.immobile.append(d)
+            elif left.any():
+                raise Refused("a dry joint that the others leave one of two motions")
+        if self.immobile and any(d.rows for d in self.dry):
+            raise Refused("friction of a reaction that is not determined")
 
     def breaks(self, duration):
         m = self.model

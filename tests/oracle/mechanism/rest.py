@@ -6,7 +6,9 @@ motion that a part can make by itself; the constraints then leave the motions th
 
 import numpy as np
 
-from mechanism import Refused, moved
+from mechanism import Refused, State, moved
+from mechanism.columns import LETTERS
+from mechanism.rotations import quaternion_of
 
 
 def unbalanced(march, state, mu, t=0.0):
@@ -69,7 +71,6 @@ def equilibrium(march, velocities=False, state=None, t=0.0):
     state = at_rest(march, march.begin(state))
     for d in march.dry:
         d.resting = True
-    given = m.start_u
     mu = None
     shift = None
     first = None
@@ -118,15 +119,92 @@ def equilibrium(march, velocities=False, state=None, t=0.0):
     stiff = np.abs(np.linalg.eigvals(Z.T @ K @ Z))
     if len(stiff) and stiff.min() < 1e-9 * stiff.max():
         raise Refused("an equilibrium that some motion does not leave")
+    return let_go(march, state, velocities)
+
+
+def state_of_row(march, row):
+    """The configuration that a row of results tells, with the turns of the joints' angles; None where it leaves out a coordinate."""
+    m = march.model
+    state = m.start_state()
+    turned = np.zeros((len(m.names), 3))
+    for c in m.free:
+        p, i = divmod(int(c), 6)
+        column = f"{m.names[p]}.{LETTERS[i]}" + (".position [m]" if i < 3 else ".angle [rad]")
+        if column not in row:
+            return None
+        if i < 3:
+            state.r[p, i] = row[column]
+        else:
+            turned[p, i - 3] = row[column]
+    q, angle = state.q.copy(), state.angle.copy()
+    for p in {int(c) // 6 for c in m.free if c % 6 >= 3}:
+        angle[p] = turned[p, 2]
+        q[p] = quaternion_of(turned[p])
+    state = State(state.r, q, state.u, angle, state.turns)
+    if len(m.atans):
+        state.turns = m.scalars(state)[0][m.first_atan : m.first_atan + len(m.atans)]
+        for c, constant in zip(m.coordinates, m.way_constant):
+            ((sort, number),) = c.form
+            if sort == "atan" and f"{c.name}.angle [rad]" in row and c.kind == "angle":
+                state.turns[number] = row[f"{c.name}.angle [rad]"] - constant
+    return state
+
+
+def equilibrium_at(march, state):
+    """The equilibrium next to a state, by Newton's method: what is an equilibrium stays where it is."""
+    m = march.model
+    march.standing = True
+    march.begin()      # locks lie on the side of the start
+    state = at_rest(march, state)
+    for d in march.dry:
+        d.resting = True
+    ways = m.way_map @ m.scalars(state)[0] + m.way_constant
+    for l in march.locks:
+        reach = 1e-9 * (1.0 if m.coordinates[l.joint.way].turning else march.box)
+        if l.side * (l.at - ways[l.joint.way]) <= reach:
+            l.held = True
+            l.done = l.kind == "latch"
+    state = march.project(state, 0.0, velocities=False)
+    for _ in range(20):
+        state.u = np.zeros(m.nf)
+        kin = m.scalars(state)
+        a, mu, G = march.instant(state, 0.0, kin)
+        pulling = _pulling(march, kin, mu)
+        K = stiffness(march, state, mu, 0.0)
+        n = len(G)
+        A = np.zeros((m.nf + n, m.nf + n))
+        A[: m.nf, : m.nf] = march.Linv @ K @ march.Linv.T
+        B = march.Linv @ G.T
+        A[: m.nf, m.nf :], A[m.nf :, : m.nf] = -B, B.T
+        x = np.linalg.lstsq(A, np.concatenate([march.Linv @ m.M @ a, np.zeros(n)]), rcond=1e-9)[0]
+        dq = march.Linv.T @ x[: m.nf]
+        reach = max(np.max(np.abs(dq[m.free % 6 < 3]), initial=0) / march.box, np.max(np.abs(dq[m.free % 6 >= 3]), initial=0))
+        if not reach < 0.1:
+            raise Refused("no equilibrium next to what is told")
+        if reach < 1e-10:
+            if pulling:
+                for l in pulling:
+                    l.held = False
+                continue
+            weight = np.linalg.norm(march.Linv @ march.applied(state, 0.0, kin))
+            stiff = np.linalg.norm(march.Linv @ K @ march.Linv.T, 2) * march_scale(march)
+            if not np.linalg.norm(march.Linv @ m.M @ a) <= 1e-8 * max(weight, 1e-3 * stiff):
+                raise Refused("what is told is not in balance")
+            return let_go(march, state)
+        state = march.project(moved(m, state, dq), 0.0, velocities=False)
+    raise Refused("no equilibrium next to what is told")
+
+
+def let_go(march, state, velocities=False):
+    """The start of a march from an equilibrium: with the velocities given, or at rest."""
     for d in march.dry:
         d.resting = False
-        d.place = d.maps @ m.scalars(state)[0]
+        d.place = d.maps @ march.model.scalars(state)[0]
     march.standing = not velocities
-    state.u = np.array(given)
     if velocities:
-        state = march.project_velocities(state, t)
-    else:
-        state.u = np.zeros(m.nf)
+        state.u = np.array(march.model.start_u)
+        return march.project_velocities(state, 0.0)
+    state.u = np.zeros(march.model.nf)
     return state
 
 
