@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build=(g++ cmake ninja-build python3 libeigen3-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libnetcdf-dev
+build=(g++ cmake ninja-build python3 libeigen3-dev libfmt-dev libtomlplusplus-dev libnetcdf-dev
        libsuitesparse-dev libspectra-dev libcli11-dev libtbb-dev)
 tests=(libgtest-dev libgmock-dev python3-jsonschema python3-numpy python3-scipy clang-format chromium chromium-driver)
 bench=(libbenchmark-dev libboost-dev libsundials-dev)

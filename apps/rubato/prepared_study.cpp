@@ -24,7 +24,7 @@ numerics::Parameters overrides_of(const std::vector<std::string>& settings) {
       throw InvalidInput(fmt::format("--set {}: write PARAM=VALUE, such as --set N0=25", setting));
     const std::string name = setting.substr(0, equals), text = setting.substr(equals + 1);
     try {
-      values.emplace_back(name, numerics::Expression(text, {})());
+      values.emplace_back(name, numerics::Formula(text, {})());
     } catch (const InvalidInput& fault) {
       throw InvalidInput(fmt::format("--set {}: {}", setting, fault.message()));
     }

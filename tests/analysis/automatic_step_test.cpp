@@ -157,7 +157,7 @@ TEST(AutomaticStep, HalvesBeforeALoadThatIsNotFiniteAndKeepsWhatItHas) {
   system::LocallyNonlinear::Parts parts;
   parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
   parts.damping = SparseMatrix(1, 1);
-  parts.loads = system::Loads({{{0}, {1.0}, model::FormulaLaw{numerics::Expression("sqrt(1-t)", {}, true)}}});
+  parts.loads = system::Loads({{{0}, {1.0}, model::FormulaLaw{numerics::Formula("sqrt(1-t)", {}, true)}}});
   parts.coordinates = {"a"};
   const system::LocallyNonlinear system(std::move(parts));
   const Recorded result = run(system, description(1e-3, 2.0, "generalized_alpha"));

@@ -202,7 +202,7 @@ TEST(Transient, StopsWhenAskedAndKeepsWhatItHas) {
 TEST(Transient, SaysWhenWhereAndWhatToTryWhenALoadIsNotFinite) {
   system::LocallyNonlinear::Parts parts;
   parts.mass = parts.damping = parts.stiffness = testing::sparse(Matrix::Identity(2, 2));
-  parts.loads = system::Loads({{{1}, {1.0}, model::FormulaLaw{numerics::Expression("1/(t-1)", {}, true)}}});
+  parts.loads = system::Loads({{{1}, {1.0}, model::FormulaLaw{numerics::Formula("1/(t-1)", {}, true)}}});
   parts.coordinates = {"a", "b"};
   const system::LocallyNonlinear system(std::move(parts));
   const Recorded result = run(system, description("generalized_alpha", 0.125, 2.0));

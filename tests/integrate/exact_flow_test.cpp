@@ -288,7 +288,7 @@ TEST(ExactFlow, RefusesFormulasOfTimeAndLargeModels) {
   EXPECT_THROW(ExactFlow{testing::chain(301, 1)}, InvalidInput);
   system::LocallyNonlinear::Parts parts;
   parts.mass = parts.damping = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
-  parts.loads = system::Loads({{{0}, {1.0}, model::FormulaLaw{numerics::Expression("exp(-t)", {}, true)}}});
+  parts.loads = system::Loads({{{0}, {1.0}, model::FormulaLaw{numerics::Formula("exp(-t)", {}, true)}}});
   const system::LocallyNonlinear system(std::move(parts));
   EXPECT_THROW(ExactFlow{system}, InvalidInput);
 }

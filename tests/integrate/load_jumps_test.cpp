@@ -23,7 +23,7 @@ model::TableLaw falling_table(double at = jump) {
   return table;
 }
 
-model::FormulaLaw falling_formula() { return {numerics::Expression("t < 0.75 ? 1 : -0.5", {}, true)}; }
+model::FormulaLaw falling_formula() { return {numerics::Formula("t < 0.75 ? 1 : -0.5", {}, true)}; }
 
 /// A chain under a load on its first mass that jumps, from rest: of one mass, or of so many that its steps are sparse.
 system::LocallyNonlinear struck_chain(Index n, const model::TimeLaw& law, Index sliders = 0) {
@@ -124,7 +124,7 @@ TEST(LoadJumps, WithinAStepAreCounted) {
 
 // The zeros of sin are where the choice changes its mind, and the sine is 1e-16 there on one side.
 TEST(LoadJumps, AreNotTheKinksOfARectifiedSine) {
-  const model::FormulaLaw law{numerics::Expression("sin(7*t) > 0 ? sin(7*t) : 0", {}, true)};
+  const model::FormulaLaw law{numerics::Formula("sin(7*t) > 0 ? sin(7*t) : 0", {}, true)};
   const system::Loads loads({system::LoadTerm{{0}, {1.0}, law}});
   EXPECT_FALSE(loads.breakpoints(0.0, end).empty());
   EXPECT_TRUE(jumps_of(loads, 0.0, end).empty());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-TimeFormula formula(const std::string& text) { return TimeFormula(text, {}, {"angle", "rate"}); }
+Formula formula(const std::string& text) { return Formula(text, {}, true, {"angle", "rate"}); }
 
 /// How long a step may be that starts at t, by the bound there alone.
 double bound_at(const Swings& swings, double t) {
@@ -62,7 +62,7 @@ TEST(FormulaEnclosure, HoldsTheFormulaAndItsDerivatives) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   for (const std::string& text : all_operations) {
-    const TimeFormula of_time = formula(text);
+    const Formula of_time = formula(text);
     FormulaEnclosure enclosure(of_time);
     for (int i = 0; i < 300; ++i) {
       const double from = 4.0 * share(random), width = std::pow(10.0, -5.0 * share(random));
@@ -70,7 +70,7 @@ TEST(FormulaEnclosure, HoldsTheFormulaAndItsDerivatives) {
       const IntervalSeries over = enclosure.of(enclosure.whole());
       for (int k = 0; k < 5; ++k) {
         const double t = from + width * share(random);
-        const TimeDerivatives exact = of_time(t);
+        const TimeDerivatives exact = of_time.derivatives(t);
         const double values[] = {exact.value, exact.rate, exact.second_rate};
         for (int order = 0; order <= 2; ++order) {
           if (!std::isfinite(exact.value) || !std::isfinite(values[order])) continue;
@@ -89,7 +89,7 @@ TEST(FormulaEnclosure, HoldsTheFormulaAndItsDerivatives) {
 TEST(FormulaEnclosure, KnowsHigherDerivatives) {
   const double t = 0.7;
   const auto at = [&](const std::string& text, int order) {
-    const TimeFormula of_time = formula(text);
+    const Formula of_time = formula(text);
     FormulaEnclosure enclosure(of_time);
     enclosure.evaluate({t, t}, IntervalSeries::most);
     return enclosure.of(enclosure.whole()).derivative(order).low;

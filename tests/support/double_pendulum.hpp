@@ -27,7 +27,7 @@ inline model::Mechanism double_pendulum(bool knows_kinks = true) {
     m.forces.push_back({2, model::TableLaw{{0.0, 0.5, 1.0}, {0.0, 40.0, 0.0}, model::TableLaw::Beyond::zero, ""}});
   else
     m.forces.push_back(
-        {2, model::FormulaLaw{numerics::Expression("t < 0.5 ? 80*t : (t < 1 ? 80*(1 - t) : 0)", {}, true)}});
+        {2, model::FormulaLaw{numerics::Formula("t < 0.5 ? 80*t : (t < 1 ? 80*(1 - t) : 0)", {}, true)}});
   m.reference = std::sqrt(42.0);  // 3 (m1 + m2) (diagonal 2 m)^2 / 2 links
   return m;
 }

@@ -127,7 +127,7 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   plan.locate_events =
       description.locate_events.value_or(system.stop_count() > 0 || (is_pair && system.slider_count() > 0));
   plan.rebuild = description.rebuild;
-  const LoadSwings swings(system, parameters, duration);
+  const LoadSwings swings(system, duration);
   plan_step_range(title, description, parameters, duration,
                   largest_step(title, description, method, system, swings, parameters, duration, allow_unstable), plan);
   plan_swings(description, swings, plan, warnings);

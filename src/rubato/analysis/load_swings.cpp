@@ -9,22 +9,20 @@
 
 namespace rubato::analysis {
 
-LoadSwings::LoadSwings(const system::LocallyNonlinear& system, const numerics::Parameters& parameters, double duration)
-    : duration_(duration) {
-  for (const auto& term : system.loads().terms()) take(term.law, parameters);
+LoadSwings::LoadSwings(const system::LocallyNonlinear& system, double duration) : duration_(duration) {
+  for (const auto& term : system.loads().terms()) take(term.law);
 }
 
-LoadSwings::LoadSwings(const model::Mechanism& mechanism, const numerics::Parameters& parameters, double duration)
-    : duration_(duration) {
-  for (const auto& force : mechanism.forces) take(force.law, parameters);
-  for (const auto& law : mechanism.following_laws) take(law, parameters);
+LoadSwings::LoadSwings(const model::Mechanism& mechanism, double duration) : duration_(duration) {
+  for (const auto& force : mechanism.forces) take(force.law);
+  for (const auto& law : mechanism.following_laws) take(law);
   for (const auto& formula : mechanism.joint_formulas) take(formula, 0);
   for (const auto& drive : mechanism.drives)
-    if (const auto* formula = std::get_if<numerics::TimeFormula>(&drive.law))
+    if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))
       for (const int order : {0, 2}) take(*formula, order);  // forces follow the acceleration
 }
 
-void LoadSwings::take(const model::TimeLaw& law, const numerics::Parameters& parameters) {
+void LoadSwings::take(const model::TimeLaw& law) {
   if (const auto* harmonic = std::get_if<model::HarmonicLaw>(&law)) {
     const double omega = std::abs(harmonic->angular_frequency);
     if (omega == 0.0) return;
@@ -34,11 +32,11 @@ void LoadSwings::take(const model::TimeLaw& law, const numerics::Parameters& par
   } else if (const auto* derivative = std::get_if<model::FormulaDerivative>(&law)) {
     take(derivative->formula, derivative->order);
   } else if (const auto* formula = std::get_if<model::FormulaLaw>(&law)) {
-    if (const auto known = numerics::known_formula(formula->formula.text(), parameters)) take(*known, 0);
+    take(formula->formula, 0);
   }
 }
 
-void LoadSwings::take(const numerics::TimeFormula& formula, int order) {
+void LoadSwings::take(const numerics::Formula& formula, int order) {
   const std::pair<std::string, int> key(formula.text(), order);
   if (std::find(known_.begin(), known_.end(), key) != known_.end()) return;
   known_.push_back(key);

@@ -15,9 +15,8 @@ namespace rubato::analysis {
 /// need be known, since steps end at their rows.
 class LoadSwings {
  public:
-  /// @param parameters  of which the formulas were made
-  LoadSwings(const system::LocallyNonlinear& system, const numerics::Parameters& parameters, double duration);
-  LoadSwings(const model::Mechanism& mechanism, const numerics::Parameters& parameters, double duration);
+  LoadSwings(const system::LocallyNonlinear& system, double duration);
+  LoadSwings(const model::Mechanism& mechanism, double duration);
 
   /// What harmonic laws allow: a sixth of the shortest period [s]; HUGE_VAL where there are none.
   double harmonic_limit() const;
@@ -37,8 +36,8 @@ class LoadSwings {
     bool is_harmonic = false;
     numerics::Swings swings;
   };
-  void take(const model::TimeLaw& law, const numerics::Parameters& parameters);
-  void take(const numerics::TimeFormula& formula, int order);
+  void take(const model::TimeLaw& law);
+  void take(const numerics::Formula& formula, int order);
 
   double duration_;
   std::vector<Load> loads_;

@@ -77,7 +77,7 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
                            "solves, so that steps of mechanisms always end there; remove it");
   plan.locate_events = true;
   plan.rebuild = description.rebuild;
-  const LoadSwings swings(mechanism.model(), parameters, duration);
+  const LoadSwings swings(mechanism.model(), duration);
   const double largest = std::min(duration / 50.0, swings.harmonic_limit());
   plan_step_range(title, description, parameters, duration,
                   std::min(duration, positive_or(description.largest, largest, title + "largest", parameters)), plan);
@@ -192,11 +192,11 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
                          fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
                                      transient.duration / step, step));
     transient.automatic = fixed_step(step, transient.duration);
-    LoadSwings(mechanism.model(), parameters, transient.duration).warn_of_long_steps(step, plan.warnings);
+    LoadSwings(mechanism.model(), transient.duration).warn_of_long_steps(step, plan.warnings);
   }
   refuse_short_tables(mechanism.model(), transient.duration, where);
   for (const auto& drive : mechanism.model().drives)
-    if (const auto* formula = std::get_if<numerics::TimeFormula>(&drive.law))
+    if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))
       if (const auto jump = numerics::first_jump(*formula, 0, 0.0, transient.duration))
         throw InvalidInput(where,
                            fmt::format("joint \"{}\": the drive \"{}\" jumps at t = {} s, and nothing moves from "

@@ -1,6 +1,6 @@
 #include <rubato/analysis/parameter_dependence.hpp>
 #include <rubato/model/load_laws.hpp>
-#include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <algorithm>
 

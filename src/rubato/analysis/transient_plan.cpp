@@ -229,7 +229,7 @@ TransientPlan plan_transient(const std::string& name, const Location& where,
                          fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
                                      plan.duration / plan.step, plan.step));
     if (!description.allow_unstable) require_stable(plan, system, place(description.step->where, where));
-    LoadSwings(system, parameters, plan.duration).warn_of_long_steps(plan.step, plan.warnings);
+    LoadSwings(system, plan.duration).warn_of_long_steps(plan.step, plan.warnings);
   }
   plan_output(plan, description.output, parameters, where);
   require_tables_to_reach(system, plan.duration, where);

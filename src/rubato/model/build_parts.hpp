@@ -15,8 +15,8 @@ TimeLaw build_time_law(const TimeLawDescription& description, const numerics::Pa
 /// A formula that says where something is. Throws InvalidInput where that has no finite value, rate and second rate at
 /// t = 0.
 /// @param part  "the displacement of \"base.y\""
-numerics::TimeFormula build_motion(const TimeFormulaDescription& description, const numerics::Parameters& parameters,
-                                   const std::string& part);
+numerics::Formula build_motion(const TimeFormulaDescription& description, const numerics::Parameters& parameters,
+                               const std::string& part);
 /// A table likewise, without jumps. Throws InvalidInput.
 TableLaw build_motion(const TableDescription& description, const numerics::Parameters& parameters,
                       const std::string& part, const Location& where);

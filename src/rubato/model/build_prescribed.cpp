@@ -20,7 +20,7 @@ struct Building {
   }
 
   Prescribed operator()(const TimeFormulaDescription& formula) const {
-    const numerics::TimeFormula motion = build_motion(formula, parameters, part);
+    const numerics::Formula motion = build_motion(formula, parameters, part);
     return {coordinate, FormulaDerivative{motion, 0}, FormulaDerivative{motion, 1}, FormulaDerivative{motion, 2}};
   }
 
@@ -38,11 +38,11 @@ struct Building {
 
 }  // namespace
 
-numerics::TimeFormula build_motion(const TimeFormulaDescription& description, const numerics::Parameters& parameters,
-                                   const std::string& part) {
+numerics::Formula build_motion(const TimeFormulaDescription& description, const numerics::Parameters& parameters,
+                               const std::string& part) {
   try {
-    numerics::TimeFormula motion(description.formula.expression, parameters);
-    const numerics::TimeDerivatives start = motion(0.0);
+    numerics::Formula motion(description.formula.expression, parameters, true);
+    const numerics::TimeDerivatives start = motion.derivatives(0.0);
     if (!std::isfinite(start.value) || !std::isfinite(start.rate) || !std::isfinite(start.second_rate))
       throw InvalidInput(fmt::format("\"{}\" has no finite value, rate and second rate at t = 0 ({}, {}, {})",
                                      motion.text(), start.value, start.rate, start.second_rate));

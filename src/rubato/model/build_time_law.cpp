@@ -26,7 +26,7 @@ struct Building {
     if (is_constant(formula, parameters))
       return HarmonicLaw{evaluate(formula.formula, parameters, part + ": expression"), 0.0, 0.0};
     try {
-      FormulaLaw law{numerics::Expression(text, parameters, true)};
+      FormulaLaw law{numerics::Formula(text, parameters, true)};
       const double start = law.formula(0.0);
       if (!std::isfinite(start))
         throw InvalidInput(fmt::format("\"{}\" is {} at t = 0; give a formula that is finite at all times", text,

@@ -32,12 +32,7 @@ HarmonicLaw derivative(const HarmonicLaw& law, int order) {
 }
 
 bool is_constant(const TimeFormulaDescription& formula, const numerics::Parameters& parameters) {
-  try {
-    numerics::require_expression(formula.formula.expression, parameters, false);
-    return true;
-  } catch (const InvalidInput&) {
-    return false;
-  }
+  return numerics::is_formula_of(parameters, formula.formula.expression);
 }
 
 }  // namespace rubato::model

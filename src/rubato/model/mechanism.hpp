@@ -87,9 +87,9 @@ struct Mechanism {
   std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
   std::vector<NodeForce> forces;
   std::vector<TimeLaw> following_laws;  ///< of forces and moments that are elements, for when they are not smooth
-  std::vector<numerics::TimeFormula> joint_formulas;  ///< laws of joints that switch with time, for when they do
-  Axis gravity = Axis::Zero();                        ///< [m/s2]
-  double reference = 0.0;                             ///< characteristic size for error measures [m sqrt(kg)]; 0: none
+  std::vector<numerics::Formula> joint_formulas;  ///< laws of joints that switch with time, for when they do
+  Axis gravity = Axis::Zero();                    ///< [m/s2]
+  double reference = 0.0;                         ///< characteristic size for error measures [m sqrt(kg)]; 0: none
   MechanismDrawing drawing;
 
   explicit Mechanism(int dimension_ = 2);

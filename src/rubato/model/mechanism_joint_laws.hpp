@@ -80,8 +80,8 @@ void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const
         joint.drive->expression.empty() ? fmt::format("{}", joint.drive->value) : joint.drive->expression;
     try {
       elements.push_back(make_joint_drive(joint.name, s, text, assembly.parameters, when));
-      if (auto formula = numerics::known_formula(text, assembly.parameters, {s.name(), "rate"}))
-        assembly.mechanism.joint_formulas.push_back(std::move(*formula));
+      assembly.mechanism.joint_formulas.emplace_back(text, assembly.parameters, true,
+                                                     std::vector<std::string>{s.name(), "rate"});
     } catch (const InvalidInput& fault) {
       throw InvalidInput(joint.drive->where,
                          fmt::format("{}: {}: {}", part, s.is_angle() ? "moment" : "force", fault.message()));

@@ -4,7 +4,7 @@
 #include <rubato/model/description.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
-#include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <optional>
 #include <string>

@@ -11,7 +11,7 @@ double evaluate(const Quantity& quantity, const numerics::Parameters& parameters
   double value = quantity.value;
   if (!quantity.expression.empty()) {
     try {
-      value = numerics::Expression(quantity.expression, parameters)();
+      value = numerics::Formula(quantity.expression, parameters)();
     } catch (const InvalidInput& fault) {
       throw InvalidInput(quantity.where, what + ": " + fault.message());
     }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <rubato/core/error.hpp>
-#include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <string>
 #include <utility>

@@ -77,10 +77,10 @@ double value(const TimeLaw& law, double t, Side side) {
     }
     double operator()(const TableLaw& table) const { return value(table, t, side); }
     double operator()(const FormulaDerivative& derivative) const {
-      const numerics::TimeFormula& formula = derivative.formula;
-      const numerics::TimeDerivatives all = has_no_left()        ? formula(t)
-                                            : side == Side::left ? formula.from_left(t)
-                                                                 : formula.from_right(t);
+      const numerics::Formula& formula = derivative.formula;
+      const numerics::TimeDerivatives all = has_no_left()        ? formula.derivatives(t)
+                                            : side == Side::left ? formula.derivatives_from_left(t)
+                                                                 : formula.derivatives_from_right(t);
       return derivative.order == 0 ? all.value : derivative.order == 1 ? all.rate : all.second_rate;
     }
     double operator()(const SplineLaw& spline) const { return value_of(spline, t, side); }

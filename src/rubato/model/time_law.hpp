@@ -1,7 +1,6 @@
 #pragma once
 
-#include <rubato/numerics/expression.hpp>
-#include <rubato/numerics/time_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <string>
 #include <variant>
@@ -17,7 +16,7 @@ struct HarmonicLaw {
 };
 
 struct FormulaLaw {
-  numerics::Expression formula;  ///< of t [s]
+  numerics::Formula formula;  ///< of t [s]
 };
 
 /// Linear interpolation; times do not decrease, and two equal times are a jump with a value on either side.
@@ -31,7 +30,7 @@ struct TableLaw {
 
 /// A derivative of a formula with respect to t: how a support moves.
 struct FormulaDerivative {
-  numerics::TimeFormula formula;
+  numerics::Formula formula;
   int order = 0;  ///< 0, 1 or 2
 };
 

@@ -23,15 +23,9 @@ S steps(const Interval& value, int n) {
 
 }  // namespace
 
-FormulaEnclosure::FormulaEnclosure(const TimeFormula& formula, double others)
-    : nodes_(SwitchSearch::nodes(formula)), others_(others) {
+FormulaEnclosure::FormulaEnclosure(const Formula& formula, double others)
+    : nodes_(formula.tree().nodes), others_(others) {
   values_.resize(nodes_.size());
-  for (const Node& node : nodes_) {
-    const auto& known = formula_functions();
-    const auto found =
-        std::find_if(known.begin(), known.end(), [&](const FormulaFunction& one) { return one.of == node.function; });
-    functions_.push_back(found == known.end() ? nullptr : found->over_interval);
-  }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
     Shape shape = node.kind == Kind::time    ? Shape::of_time
@@ -89,7 +83,7 @@ IntervalSeries FormulaEnclosure::value_of(const Node& node, const Interval& t, i
     case Kind::negative:
       return series::scaled(-1.0, a, n);
     case Kind::function:
-      return functions_[static_cast<std::size_t>(&node - nodes_.data())](a, n);
+      return node.function->over_interval(a, n);
     case Kind::magnitude:
       if (u.is_empty() || u.low >= 0.0) return a;
       if (u.high <= 0.0) return series::scaled(-1.0, a, n);

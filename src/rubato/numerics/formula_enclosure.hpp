@@ -1,24 +1,11 @@
 #pragma once
 
+#include <rubato/numerics/formula.hpp>
 #include <rubato/numerics/interval_series.hpp>
-#include <rubato/numerics/time_formula.hpp>
 
 #include <vector>
 
 namespace rubato::numerics {
-
-/// What searches see of a formula: the nodes of its tree.
-class SwitchSearch {
- public:
-  using Kind = TimeFormula::Kind;
-  using Node = TimeFormula::Node;
-  /// What a node is made of comes before it; the last is the whole.
-  static const std::vector<Node>& nodes(const TimeFormula& formula) { return formula.nodes_; }
-  /// @param direction  of a limit: -1 or 1, just before or after t; 0: at t
-  static TimeDerivatives at(const TimeFormula& formula, int node, double t, int direction) {
-    return formula.at(node, t, direction);
-  }
-};
 
 /// What parts of a formula are, with their derivatives with respect to t, while t runs through an interval. Where a
 /// branch changes within the interval, or may, both count and derivatives may be anything. A workspace.
@@ -26,7 +13,7 @@ class FormulaEnclosure {
  public:
   /// @param formula  must outlive the enclosure
   /// @param others   what further values are that change with what moves
-  explicit FormulaEnclosure(const TimeFormula& formula, double others = 0.0);
+  explicit FormulaEnclosure(const Formula& formula, double others = 0.0);
 
   int whole() const { return static_cast<int>(nodes_.size()) - 1; }
   /// The largest parts that depend on t and on nothing else that changes: the whole, or parts of it.
@@ -41,8 +28,8 @@ class FormulaEnclosure {
   const IntervalSeries& of(int part) const { return values_[static_cast<std::size_t>(part)]; }
 
  private:
-  using Kind = SwitchSearch::Kind;
-  using Node = SwitchSearch::Node;
+  using Kind = FormulaTree::Kind;
+  using Node = FormulaTree::Node;
   enum class Shape { constant, of_time, of_others };
 
   IntervalSeries value_of(const Node& node, const Interval& t, int n) const;
@@ -50,7 +37,6 @@ class FormulaEnclosure {
 
   const std::vector<Node>& nodes_;
   double others_;
-  std::vector<IntervalSeries (*)(const IntervalSeries&, int)> functions_;  // of each node, or null
   std::vector<Shape> shapes_;
   std::vector<int> wanted_;  // what is not constant, what a node is made of before it
   std::vector<IntervalSeries> values_;

@@ -1,7 +1,9 @@
 #include <rubato/numerics/formula_functions.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 namespace rubato::numerics {
 namespace {
@@ -9,100 +11,100 @@ namespace {
 using D = TimeDerivatives;
 
 const std::array<FormulaFunction, 18> functions{{
-    {"sin",
+    {"sin", [](double x) { return std::sin(x); },
      [](double x) {
        return D{std::sin(x), std::cos(x), -std::sin(x)};
      },
      series::sin},
-    {"cos",
+    {"cos", [](double x) { return std::cos(x); },
      [](double x) {
        return D{std::cos(x), -std::sin(x), -std::cos(x)};
      },
      series::cos},
-    {"tan",
+    {"tan", [](double x) { return std::tan(x); },
      [](double x) {
        const double f = std::tan(x), first = 1.0 + f * f;
        return D{f, first, 2.0 * f * first};
      },
      series::tan},
-    {"asin",
+    {"asin", [](double x) { return std::asin(x); },
      [](double x) {
        const double first = 1.0 / std::sqrt(1.0 - x * x);
        return D{std::asin(x), first, x * first * first * first};
      },
      series::asin},
-    {"acos",
+    {"acos", [](double x) { return std::acos(x); },
      [](double x) {
        const double first = -1.0 / std::sqrt(1.0 - x * x);
        return D{std::acos(x), first, x * first * first * first};
      },
      series::acos},
-    {"atan",
+    {"atan", [](double x) { return std::atan(x); },
      [](double x) {
        const double first = 1.0 / (1.0 + x * x);
        return D{std::atan(x), first, -2.0 * x * first * first};
      },
      series::atan},
-    {"sinh",
+    {"sinh", [](double x) { return std::sinh(x); },
      [](double x) {
        return D{std::sinh(x), std::cosh(x), std::sinh(x)};
      },
      series::sinh},
-    {"cosh",
+    {"cosh", [](double x) { return std::cosh(x); },
      [](double x) {
        return D{std::cosh(x), std::sinh(x), std::cosh(x)};
      },
      series::cosh},
-    {"tanh",
+    {"tanh", [](double x) { return std::tanh(x); },
      [](double x) {
        const double f = std::tanh(x), first = 1.0 - f * f;
        return D{f, first, -2.0 * f * first};
      },
      series::tanh},
-    {"asinh",
+    {"asinh", [](double x) { return std::asinh(x); },
      [](double x) {
        const double first = 1.0 / std::sqrt(x * x + 1.0);
        return D{std::asinh(x), first, -x * first * first * first};
      },
      series::asinh},
-    {"acosh",
+    {"acosh", [](double x) { return std::acosh(x); },
      [](double x) {
        const double first = 1.0 / std::sqrt(x * x - 1.0);
        return D{std::acosh(x), first, -x * first * first * first};
      },
      series::acosh},
-    {"atanh",
+    {"atanh", [](double x) { return std::atanh(x); },
      [](double x) {
        const double first = 1.0 / (1.0 - x * x);
        return D{std::atanh(x), first, 2.0 * x * first * first};
      },
      series::atanh},
-    {"log2",
+    {"log2", [](double x) { return std::log2(x); },
      [](double x) {
        return D{std::log2(x), std::numbers::log2e / x, -std::numbers::log2e / (x * x)};
      },
      series::log2},
-    {"log10",
+    {"log10", [](double x) { return std::log10(x); },
      [](double x) {
        return D{std::log10(x), std::numbers::log10e / x, -std::numbers::log10e / (x * x)};
      },
      series::log10},
-    {"log",
+    {"log", [](double x) { return std::log(x); },
      [](double x) {
        return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
      },
      series::log},
-    {"ln",
+    {"ln", [](double x) { return std::log(x); },
      [](double x) {
        return D{std::log(x), 1.0 / x, -1.0 / (x * x)};
      },
      series::log},
-    {"exp",
+    {"exp", [](double x) { return std::exp(x); },
      [](double x) {
        return D{std::exp(x), std::exp(x), std::exp(x)};
      },
      series::exp},
-    {"sqrt",
+    {"sqrt", [](double x) { return std::sqrt(x); },
      [](double x) {
        const double f = std::sqrt(x);
        return D{f, 0.5 / f, -0.25 / (f * x)};
@@ -113,5 +115,12 @@ const std::array<FormulaFunction, 18> functions{{
 }  // namespace
 
 const std::array<FormulaFunction, 18>& formula_functions() { return functions; }
+
+bool is_function(const std::string& name) {
+  static constexpr std::array<std::string_view, 8> with_nodes{"abs", "sign", "rint", "atan2",
+                                                              "min", "max",  "sum",  "avg"};
+  return std::find(with_nodes.begin(), with_nodes.end(), name) != with_nodes.end() ||
+         std::any_of(functions.begin(), functions.end(), [&](const auto& one) { return name == one.name; });
+}
 
 }  // namespace rubato::numerics

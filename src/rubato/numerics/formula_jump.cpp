@@ -6,7 +6,7 @@
 
 namespace rubato::numerics {
 
-std::optional<double> first_jump(const TimeFormula& formula, int order, double from, double to) {
+std::optional<double> first_jump(const Formula& formula, int order, double from, double to) {
   constexpr double round_off = 1e-9;
   constexpr int points = 8;
   const auto derivative = [&](const TimeDerivatives& all) {
@@ -17,7 +17,8 @@ std::optional<double> first_jump(const TimeFormula& formula, int order, double f
   const auto measure = [&](double end) {
     for (int i = 0; i <= points; ++i) {
       const double t = start + (end - start) * i / points;
-      const double value = derivative(i < points ? formula.from_right(t) : formula.from_left(t));
+      const double value =
+          derivative(i < points ? formula.derivatives_from_right(t) : formula.derivatives_from_left(t));
       if (std::isfinite(value)) size = std::max(size, std::abs(value));
     }
     start = end;
@@ -25,7 +26,9 @@ std::optional<double> first_jump(const TimeFormula& formula, int order, double f
   for (const double t : switches) measure(t);
   measure(to);
   for (const double t : switches)
-    if (std::abs(derivative(formula.from_right(t)) - derivative(formula.from_left(t))) > round_off * size) return t;
+    if (std::abs(derivative(formula.derivatives_from_right(t)) - derivative(formula.derivatives_from_left(t))) >
+        round_off * size)
+      return t;
   return std::nullopt;
 }
 

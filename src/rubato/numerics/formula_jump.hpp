@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/numerics/time_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <optional>
 
@@ -8,6 +8,6 @@ namespace rubato::numerics {
 
 /// The first time in (from, to) at which a formula, or its derivative of order 1 or 2, jumps by more than round-off:
 /// 1e-9 of the largest of what stands on either side of the switches and at some points between them.
-std::optional<double> first_jump(const TimeFormula& formula, int order, double from, double to);
+std::optional<double> first_jump(const Formula& formula, int order, double from, double to);
 
 }  // namespace rubato::numerics

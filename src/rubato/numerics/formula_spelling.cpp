@@ -1,5 +1,5 @@
 #include <rubato/core/error.hpp>
-#include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/formula_functions.hpp>
 #include <rubato/numerics/formula_spelling.hpp>
 
 #include <algorithm>
@@ -16,7 +16,6 @@ namespace {
 using Spellings = std::pair<const char*, const char*>;
 
 bool is_blank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
-bool is_sign(char c) { return c == '+' || c == '-'; }
 bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; }
 
@@ -32,13 +31,6 @@ bool is_after_number(const std::string& text, std::size_t place) {
   const std::size_t end = place;
   while (place > 0 && (is_name(text[place - 1]) || text[place - 1] == '.')) --place;
   return place < end && (text[place] == '.' || std::isdigit(static_cast<unsigned char>(text[place])) != 0);
-}
-
-/// Whether a sign at a place joins two values, and does not belong to the one after it. The sign of an exponent, as in
-/// `1e-3`, does neither.
-bool joins_values(const std::string& text, std::size_t place) {
-  const char last = before(text, place);
-  return is_name(last) || last == ')' || last == '.';
 }
 
 template <std::size_t N>
@@ -107,25 +99,6 @@ constexpr std::array<Spellings, 17> symbols{{{"%", "write \"a - b*rint(a/b - 0.5
 
 }  // namespace
 
-std::string with_single_signs(std::string text) {
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    if (!is_sign(text[at])) continue;
-    // Between two values the first sign joins, and the run begins after it.
-    std::size_t kept = joins_values(text, at) ? std::string::npos : at;
-    bool is_minus = false;
-    std::size_t next = at;
-    for (; next < text.size() && (is_sign(text[next]) || is_blank(text[next])); ++next) {
-      if (!is_sign(text[next]) || (kept == std::string::npos && next == at)) continue;
-      is_minus = is_minus != (text[next] == '-');
-      if (kept != std::string::npos) text[kept] = ' ';
-      kept = next;
-      text[kept] = is_minus ? '-' : '+';
-    }
-    at = next - 1;
-  }
-  return text;
-}
-
 std::size_t character_of(const std::string& text, std::size_t place) {
   const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(place, text.size()));
   return 1 + static_cast<std::size_t>(std::count_if(text.begin(), end, [](char c) { return !is_continuation(c); }));
@@ -161,7 +134,7 @@ std::string name_hint(const std::string& text, std::size_t place, const std::str
   if (const std::string hint = found_in(words_between, word); !hint.empty()) return hint;
   if (is_after_number(text, place)) return "; units are implied (m, kg, s, N, rad): write the number alone";
   if (!nearest_name(name, known).empty()) return suggestion(name, known);
-  // "1e400" is no number to muParser, and then a name.
+  // "1e400" is taken for a name.
   if (std::isinf(std::strtod(name.c_str(), nullptr)) && std::isdigit(static_cast<unsigned char>(name.front())) != 0)
     return "; as a number it is beyond what can be computed with (1.8e308)";
   if (!is_call && is_function(word)) return "; arguments of a function stand in parentheses: \"" + word + "(a)\"";

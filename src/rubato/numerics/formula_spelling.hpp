@@ -7,10 +7,6 @@
 // Private to the numerics floor: how formulas are written here, for those who know them from elsewhere.
 namespace rubato::numerics {
 
-/// The formula with one sign where several stand in a row (`- -3`, `2--3`, `1e3^--a`), which muParser refuses: of those
-/// before a value the product is kept, and blanks in the place of the others, so that all characters keep their places.
-std::string with_single_signs(std::string text);
-
 /// The number, from 1, of the character that begins at a byte of the text (UTF-8).
 std::size_t character_of(const std::string& text, std::size_t place);
 

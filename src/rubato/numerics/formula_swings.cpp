@@ -214,7 +214,7 @@ class SwingSearch {
 
 }  // namespace
 
-Swings swings(const TimeFormula& formula, int order, double from, double to) {
+Swings swings(const Formula& formula, int order, double from, double to) {
   Swings all;
   const auto switches = find_switches(formula, from, to);
   if (!switches) return {{}, false};

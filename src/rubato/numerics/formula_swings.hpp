@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/numerics/time_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <cmath>
 #include <optional>
@@ -20,14 +20,9 @@ struct Swings {
   bool are_known = true;          ///< false: the search for them, or for the switches of the formula, was given up
 };
 
-/// The times in (from, to) at which a branch of a formula changes, rising (TimeFormula::switches); none where there are
+/// The times in (from, to) at which a branch of a formula changes, rising (Formula::switches); none where there are
 /// more than 262,144, or where the search for them would take longer than about a second.
-std::optional<std::vector<double>> find_switches(const TimeFormula& formula, double from, double to);
-
-/// A formula; none where something in it has no known derivative.
-/// @param others  names of values that change with what moves
-std::optional<TimeFormula> known_formula(const std::string& text, const Parameters& parameters,
-                                         const std::vector<std::string>& others = {});
+std::optional<std::vector<double>> find_switches(const Formula& formula, double from, double to);
 
 /// The swings of a formula, or of its derivative of order 1 or 2, in (from, to).
 ///
@@ -41,9 +36,9 @@ std::optional<TimeFormula> known_formula(const std::string& text, const Paramete
 /// which for a sine, whose s/|f''| is 1/omega^2 where it turns, is a sixth of its period, and for a pulse
 /// exp(-(t/tau)^2) is half of tau. A bound holds for 2 h before and after its place too.
 ///
-/// Of a formula of further values (TimeFormula) each part that depends on t alone counts, and the whole with constants
+/// Of a formula of further values (Formula) each part that depends on t alone counts, and the whole with constants
 /// in their place. Given up after about a second, as for a sine of more than 15,000 periods.
-Swings swings(const TimeFormula& formula, int order, double from, double to);
+Swings swings(const Formula& formula, int order, double from, double to);
 
 /// The smaller of two bounds at each time; those not below `longest` are left out.
 std::vector<StepBound> join(const std::vector<StepBound>& a, const std::vector<StepBound>& b,

@@ -186,7 +186,7 @@ TEST(MechanismStepper, AnswersTheSameWhateverItStartedNewtonFrom) {
 
 TEST(MechanismStepper, StopsAtALoadThatIsNotANumberAndNamesItsCoordinate) {
   auto model = testing::double_pendulum();
-  model.forces.push_back({0, model::FormulaLaw{numerics::Expression("t < 0.5 ? 0 : 1/(t-t)", {}, true)}});
+  model.forces.push_back({0, model::FormulaLaw{numerics::Formula("t < 0.5 ? 0 : 1/(t-t)", {}, true)}});
   const system::Mechanism mechanism(std::move(model));
   const auto stepper = integrate::make_mechanism_stepper(integrate::make_method("hht", {{"alpha", -0.15}}), mechanism);
   system::MechanismEquations equations(mechanism);

@@ -22,13 +22,14 @@ ParametricExcitation::ParametricExcitation(const StudyInput& input, const Parame
       followers_(dependence.followers(point)),
       point_(point),
       named_(input.parameters) {
-  for (const auto& [name, value] : input.parameters) values_.push_back(value);
+  for (const auto& [name, value] : input.parameters) {
+    names_.push_back(name);
+    values_.push_back(value);
+  }
   for (std::size_t i = 0; i < values_.size(); ++i) {
     if (!dependence.has_formula(i)) continue;
-    const numerics::Parameters before(input.parameters.begin(),
-                                      input.parameters.begin() + static_cast<std::ptrdiff_t>(i));
-    formulas_.emplace_back(i,
-                           numerics::BoundFormula(input.study.parameters[i].value.expression, before, values_.data()));
+    const std::vector<std::string> before(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i));
+    formulas_.emplace_back(i, numerics::Formula(input.study.parameters[i].value.expression, {}, false, before));
   }
   for (const auto& law : model::load_laws(input.study.model)) laws_.push_back(law_of(law));
   for (const auto& slider : input.study.model.sliders)
@@ -41,7 +42,7 @@ ParametricExcitation::Value ParametricExcitation::value_of(const model::Quantity
   value.quantity = &quantity;
   value.now = quantity.value;
   if (quantity.expression.empty()) return value;
-  value.formula.emplace(quantity.expression, input_.parameters, values_.data());
+  value.formula.emplace(quantity.expression, numerics::Parameters{}, false, names_);
   value.follows_point = dependence_.follows(quantity, point_);
   return value;
 }
@@ -81,7 +82,7 @@ const numerics::Parameters& ParametricExcitation::parameters_at(std::span<const 
 
 void ParametricExcitation::evaluate(Value& value, const std::string& part, const char* key) const {
   if (!value.formula || !(is_new_line_ || value.follows_point)) return;
-  value.now = (*value.formula)();
+  value.now = (*value.formula)(0.0, values_);
   if (std::isfinite(value.now)) return;
   throw InvalidInput(value.quantity->where,
                      fmt::format("{}: {} is {} (from \"{}\"); give a finite number", part, key,
@@ -91,7 +92,7 @@ void ParametricExcitation::evaluate(Value& value, const std::string& part, const
 void ParametricExcitation::refresh_parameters() {
   for (auto& [place, formula] : formulas_) {
     if (!is_new_line_ && !std::binary_search(followers_.begin(), followers_.end(), place)) continue;
-    values_[place] = formula();
+    values_[place] = formula(0.0, values_);
     if (std::isfinite(values_[place])) continue;
     const auto& parameter = input_.study.parameters[place];
     throw InvalidInput(parameter.value.where,

@@ -4,7 +4,7 @@
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/integrate/steady/excitation.hpp>
 #include <rubato/model/load_laws.hpp>
-#include <rubato/numerics/bound_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 #include <rubato/system/assembled_model.hpp>
 
 #include <optional>
@@ -53,7 +53,7 @@ class ParametricExcitation {
   /// A number or a formula of the parameters, and whether it follows the point parameter.
   struct Value {
     const model::Quantity* quantity = nullptr;
-    std::optional<numerics::BoundFormula> formula;
+    std::optional<numerics::Formula> formula;
     bool follows_point = false;
     double now = 0.0;
   };
@@ -87,8 +87,9 @@ class ParametricExcitation {
   const ParameterDependence& dependence_;
   std::vector<std::size_t> line_, followers_;
   std::size_t point_;
-  std::vector<double> values_;                                            ///< of all parameters
-  std::vector<std::pair<std::size_t, numerics::BoundFormula>> formulas_;  ///< of parameters, in order
+  std::vector<std::string> names_;
+  std::vector<double> values_;                                       ///< of all parameters
+  std::vector<std::pair<std::size_t, numerics::Formula>> formulas_;  ///< of parameters, in order
   numerics::Parameters named_;
   std::vector<Law> laws_;  ///< in the order of model::load_laws
   std::vector<Limit> limits_;

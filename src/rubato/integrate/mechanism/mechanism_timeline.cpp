@@ -50,8 +50,7 @@ std::vector<double> MechanismTimeline::breakpoints(double from, double to) const
       for (const double t : table->times)
         if (t > from && t < to) times.push_back(t);
     } else {
-      const std::vector<double> found =
-          model::with_eighths(std::get<numerics::TimeFormula>(drive.law).switches(from, to));
+      const std::vector<double> found = model::with_eighths(std::get<numerics::Formula>(drive.law).switches(from, to));
       switches.insert(switches.end(), found.begin(), found.end());
     }
   }

@@ -4,9 +4,7 @@
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
-#include <rubato/numerics/bound_formula.hpp>
-#include <rubato/numerics/formula_slopes.hpp>
-#include <rubato/numerics/time_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <fmt/format.h>
 
@@ -160,27 +158,12 @@ class Drive final : public CoordinateLaw<Coordinate> {
   using Base::s_, Base::when_;
 
  public:
-  Drive(std::string name, const Coordinate& s, std::string formula, numerics::Parameters parameters, const AtLock& when)
-      : Base(std::move(name), s, when), text_(std::move(formula)), names_(std::move(parameters)) {
-    switches_ = numerics::switching_formula(text_, names_, {s.name(), "rate"}).has_value();
-    try {
-      slopes_.emplace(text_, names_, std::vector<std::string>{s.name(), "rate"});
-    } catch (const InvalidInput&) {
-      // a function whose derivative is not known: slopes are differences
-    }
-    names_.insert(names_.begin(), {{s.name(), 0.0}, {"rate", 0.0}, {"t", 0.0}});
-    for (const std::size_t i : numerics::parameters_used(text_, names_))
-      if (i < uses_.size()) uses_[i] = true;
-    bind();
-  }
-  Drive(const Drive& other)
-      : Base(other),
-        text_(other.text_),
-        names_(other.names_),
-        uses_(other.uses_),
-        switches_(other.switches_),
-        slopes_(other.slopes_) {
-    bind();
+  Drive(std::string name, const Coordinate& s, std::string formula, const numerics::Parameters& parameters,
+        const AtLock& when)
+      : Base(std::move(name), s, when), formula_(std::move(formula), parameters, true, {s.name(), "rate"}) {
+    uses_ = {formula_.uses(0), formula_.uses(1)};
+    is_constant_ = !uses_[0] && !uses_[1] && !formula_.uses_time();
+    if (is_constant_) constant_ = formula_();
   }
   std::unique_ptr<Element> clone() const override { return std::make_unique<Drive>(*this); }
   bool has_kinks() const override { return true; }  // as far as is known
@@ -189,19 +172,11 @@ class Drive final : public CoordinateLaw<Coordinate> {
  private:
   double time_of(const Motion& motion) const override {
     constexpr double at_switch = 16.0 * std::numeric_limits<double>::epsilon();  // to which a step meets its time
-    return switches_ ? motion.t * (motion.side == Side::left ? 1.0 - at_switch : 1.0 + at_switch) : motion.t;
-  }
-  void bind() {
-    for (const auto& name : names_) values_.push_back(name.second);
-    formula_ = std::make_unique<numerics::BoundFormula>(text_, names_, values_.data());
-    if (!uses_[0] && !uses_[1] && !uses_[2]) constant_ = (*formula_)();
+    return formula_.has_switches() ? motion.t * (motion.side == Side::left ? 1.0 - at_switch : 1.0 + at_switch)
+                                   : motion.t;
   }
   double law(double s, double rate, double t) const override {
-    if (!uses_[0] && !uses_[1] && !uses_[2]) return constant_;
-    values_[0] = s;
-    values_[1] = rate;
-    values_[2] = t;
-    return (*formula_)();
+    return is_constant_ ? constant_ : formula_(t, std::array{s, rate});
   }
   // Exact, since modes are made of them: nothing tells how short a difference would have to be. Where the formula has
   // no finite slope (s sqrt(abs(s)) at zero, whose terms are 0 times infinity) it is one: steps of the cube root of
@@ -210,7 +185,7 @@ class Drive final : public CoordinateLaw<Coordinate> {
     constexpr double relative = 6e-6;
     const std::array<double, 2> at{s, rate};
     const auto slope = [&](std::size_t i) {
-      const double exact = slopes_ ? (*slopes_)(i, t, at) : std::numeric_limits<double>::quiet_NaN();
+      const double exact = formula_.slope(i, t, at);
       if (std::isfinite(exact)) return exact;
       const double step = relative * (1.0 + std::abs(at[i]));
       const double ds = i == 0 ? step : 0.0, dr = i == 1 ? step : 0.0;
@@ -221,13 +196,9 @@ class Drive final : public CoordinateLaw<Coordinate> {
   }
   bool depends_on_rate() const override { return uses_[1]; }
 
-  std::string text_;
-  numerics::Parameters names_;
-  std::array<bool, 3> uses_{};  // s, rate, t
-  bool switches_ = false;       // with t alone
-  std::optional<numerics::FormulaSlopes> slopes_;
-  mutable std::vector<double> values_;
-  std::unique_ptr<numerics::BoundFormula> formula_;
+  numerics::Formula formula_;   // of s, rate and t
+  std::array<bool, 2> uses_{};  // s, rate
+  bool is_constant_ = false;
   double constant_ = 0.0;
 };
 

@@ -4,7 +4,7 @@
 #include <rubato/model/joints/coordinate_table.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_projection.hpp>
-#include <rubato/numerics/expression.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <memory>
 #include <string>

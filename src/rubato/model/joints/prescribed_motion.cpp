@@ -18,8 +18,8 @@ double slope(const TableLaw& table, double t, Side side) {
 }  // namespace
 
 numerics::TimeDerivatives derivatives(const MotionLaw& law, double t, Side side) {
-  if (const auto* formula = std::get_if<numerics::TimeFormula>(&law))
-    return side == Side::left ? formula->from_left(t) : formula->from_right(t);
+  if (const auto* formula = std::get_if<numerics::Formula>(&law))
+    return side == Side::left ? formula->derivatives_from_left(t) : formula->derivatives_from_right(t);
   const auto& table = std::get<TableLaw>(law);
   return {value(table, t, side), slope(table, t, side), 0.0};
 }

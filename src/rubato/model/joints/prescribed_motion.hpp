@@ -2,7 +2,7 @@
 
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/time_law.hpp>
-#include <rubato/numerics/time_formula.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <memory>
 #include <string>
@@ -13,7 +13,7 @@
 namespace rubato::model {
 
 /// How a coordinate moves with time [rad] or [m]: a formula, or a table whose pieces are straight.
-using MotionLaw = std::variant<numerics::TimeFormula, TableLaw>;
+using MotionLaw = std::variant<numerics::Formula, TableLaw>;
 
 /// The law and its derivatives at t. Those of a table are the slope of the piece on that side, and zero.
 numerics::TimeDerivatives derivatives(const MotionLaw& law, double t, Side side);

@@ -1,7 +1,6 @@
-#include <rubato/core/error.hpp>
+#include <rubato/numerics/formula.hpp>
 #include <rubato/numerics/formula_enclosure.hpp>
 #include <rubato/numerics/formula_swings.hpp>
-#include <rubato/numerics/time_formula.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +20,8 @@ constexpr std::size_t most_operations = 1u << 24;                           // o
 /// through the whole of it, as enclosures of value and rate tell (Moore, Kearfott and Cloud 2009, chapter 8).
 class SwitchFinder {
  public:
-  SwitchFinder(const TimeFormula& formula, double from, double to)
-      : formula_(formula), nodes_(SwitchSearch::nodes(formula)), from_(from), to_(to), enclosure_(formula) {}
+  SwitchFinder(const Formula& formula, double from, double to)
+      : formula_(formula), nodes_(formula.tree().nodes), from_(from), to_(to), enclosure_(formula) {}
 
   /// None where there are too many.
   std::optional<std::vector<double>> find() {
@@ -53,8 +52,8 @@ class SwitchFinder {
   }
 
  private:
-  using Kind = SwitchSearch::Kind;
-  using Node = SwitchSearch::Node;
+  using Kind = FormulaTree::Kind;
+  using Node = FormulaTree::Node;
   enum class Shape { constant, straight, curved, unknown };  // between the changes within
 
   static bool is_switch(const Node& node) {
@@ -123,9 +122,9 @@ class SwitchFinder {
   };
 
   Point at(const Node& node, double t, int direction) const {
-    const TimeDerivatives a = SwitchSearch::at(formula_, node.first, t, direction);
+    const TimeDerivatives a = formula_.part(node.first, t, direction);
     if (node.second < 0) return {t, a};
-    const TimeDerivatives b = SwitchSearch::at(formula_, node.second, t, direction);
+    const TimeDerivatives b = formula_.part(node.second, t, direction);
     return {t, {a.value - b.value, a.rate - b.rate, a.second_rate - b.second_rate}};
   }
 
@@ -219,7 +218,7 @@ class SwitchFinder {
     return high;
   }
 
-  const TimeFormula& formula_;
+  const Formula& formula_;
   const std::vector<Node>& nodes_;
   double from_, to_;
   std::vector<Shape> shapes_;
@@ -229,29 +228,16 @@ class SwitchFinder {
   bool are_too_many_ = false;
 };
 
-bool TimeFormula::has_switches() const { return SwitchFinder(*this, 0.0, 0.0).finds_any(); }
-
-std::optional<TimeFormula> known_formula(const std::string& text, const Parameters& parameters,
-                                         const std::vector<std::string>& others) {
-  try {
-    return TimeFormula(text, parameters, others);
-  } catch (const InvalidInput&) {
-    // What makes no formula is refused by Expression; this has a function without a derivative.
-    return {};
-  }
+Formula::Formula(std::string text, const Parameters& parameters, bool of_time, const std::vector<std::string>& others)
+    : text_(std::move(text)), tree_(parse_formula(text_, parameters, of_time, others)) {
+  has_switches_ = SwitchFinder(*this, 0.0, 0.0).finds_any();
 }
 
-std::optional<TimeFormula> switching_formula(const std::string& text, const Parameters& parameters,
-                                             const std::vector<std::string>& others) {
-  std::optional<TimeFormula> formula = known_formula(text, parameters, others);
-  return formula && formula->has_switches() ? formula : std::nullopt;
-}
-
-std::optional<std::vector<double>> find_switches(const TimeFormula& formula, double from, double to) {
+std::optional<std::vector<double>> find_switches(const Formula& formula, double from, double to) {
   return SwitchFinder(formula, from, to).find();
 }
 
-std::vector<double> TimeFormula::switches(double from, double to) const {
+std::vector<double> Formula::switches(double from, double to) const {
   return find_switches(*this, from, to).value_or(std::vector<double>{});
 }
 
