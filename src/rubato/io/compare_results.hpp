@@ -14,7 +14,7 @@ struct ColumnDifference {
   double largest = 0.0;   ///< max |a - b|, in the unit of the column
   double relative = 0.0;  ///< over the largest value of the column in either table; infinite: words differ [-]
   double at = 0.0;        ///< the row of it, counted from 1, or its time [s] where times are interpolated
-  std::string told;       ///< of words, and of numbers that one of them lacks: how many, and the first
+  std::string told = {};  ///< of words, and of numbers that one of them lacks: how many, and the first
   /// Of interpolated rows: about what interpolation by straight lines adds to `relative` [-].
   double interpolation = 0.0;
 };
