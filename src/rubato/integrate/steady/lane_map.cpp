@@ -205,6 +205,10 @@ void LaneMap::encode(const system::State& state, LaneArray& states, Index lane) 
   if (width_ == 3) x.segment(2 * n_ + m_, n_) = to_modes_ * start.auxiliary_acceleration / (omega_ * omega_);
 }
 
+void LaneMap::displace(const Vector& by, LaneArray& states, Index lane) {
+  states.col(lane).segment(0, n_) += (to_modes_ * by).array();
+}
+
 double LaneMap::observed_size(const LaneArray& differences, Index lane) const {
   double size = 0.0;
   for (Index i = 0; i < observation_.observed; ++i) {

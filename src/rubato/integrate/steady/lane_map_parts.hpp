@@ -42,6 +42,7 @@ class LaneMap final : public PeriodMap {
   bool prepare(std::span<const Excitation> excitations, int steps) override;
   bool advance(const LaneArray& from, LaneArray& to, std::vector<PeriodRecord>* records, Index first) override;
   void encode(const system::State& state, LaneArray& states, Index lane) override;
+  void displace(const Vector& by, LaneArray& states, Index lane) override;
   double observed_size(const LaneArray& differences, Index lane) const override;
   Matrix linear_update() override;
 

@@ -40,6 +40,9 @@ class PeriodMap {
   /// A state of the system, at the phase zero of the loads, in the letters of the map (after prepare).
   virtual void encode(const system::State& state, LaneArray& states, Index lane) = 0;
 
+  /// Moves the structure of a state by a displacement, and nothing else of it.
+  virtual void displace(const Vector& by, LaneArray& states, Index lane) = 0;
+
   /// How far a difference of states moves what is observed: the largest |(dq, dv / omega)| over the observed of the
   /// request [m].
   virtual double observed_size(const LaneArray& differences, Index lane) const = 0;

@@ -163,11 +163,27 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
     ++response.iterations;
     double& last = response.residual;
     last = pass(excitation) ? residual(excitation) : infinity;
-    if (last <= options_.tolerance) {
+    if (last > options_.tolerance && !(last < 0.9 * best) && best <= good_enough) {
+      // Round-off: nothing better can be had.
+      y_ = best_;
+      last = pass(excitation) ? residual(excitation) : infinity;
+      if (!(last <= good_enough)) return false;
+      best = 0.0;  // settled
+    }
+    if (last <= options_.tolerance || best == 0.0) {
       if (!may_move || response.iterations > first + most_moves || !must_move_offsets(excitation)) return true;
       settled = y_;
       moving = true;
       best = infinity;
+      halvings = 0;
+      // The factors at hand may be of a pass in which the slider slipped.
+      factorise();
+      const bool solved = correct();
+      offset_shift_.setZero();
+      near_factors_ = false;
+      if (solved) put(settled + correction_, excitation);
+      may_move = solved;
+      continue;
     }
     // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
     const bool factors_do = near_factors_ && 2.0 * last * last < 0.1 * options_.tolerance * best;
@@ -177,9 +193,7 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
       best_ = y_;
       halvings = 0;
       if (!factors_do) factorise();
-      const bool solved = correct();
-      offset_shift_.setZero();
-      if (solved) {
+      if (correct()) {
         put(best_ + correction_, excitation);
         near_factors_ = true;
         if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
@@ -188,10 +202,6 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
         response.status = SteadyStatus::unbounded;
         return false;
       }
-    } else if (best <= good_enough && best < infinity && !moving) {  // round-off: nothing better can be had
-      y_ = best_;
-      response.residual = pass(excitation) ? residual(excitation) : infinity;
-      return response.residual <= good_enough;
     } else if (moving) {  // another slider slips then: the offset stays
       moving = may_move = false;
       y_ = settled;
@@ -207,7 +217,10 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
       halvings = 0;
     }
   }
-  return false;
+  if (!moving) return false;
+  y_ = settled;
+  response.residual = pass(excitation) ? residual(excitation) : infinity;
+  return response.residual <= good_enough;
 }
 
 }  // namespace rubato::integrate

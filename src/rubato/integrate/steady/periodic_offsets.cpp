@@ -9,6 +9,7 @@ namespace rubato::integrate {
 namespace {
 
 constexpr double offset_margin = 1e-10;  // by which a slider that never slips stays inside its limit
+constexpr double stiffest = 1e-9;        // k/kT beside which a change of the offset is more than round-off
 
 }  // namespace
 
@@ -43,7 +44,7 @@ bool PeriodicSolver::must_move_offsets(const Excitation& excitation) {
   return moves;
 }
 
-// How much the force of a slider that never slips changes with its offset, between 0 and 1.
+// How much the force of a slider that never slips changes with its offset: k/(kT + k) beside a stiffness k.
 double PeriodicSolver::force_by_offset(Index slider) {
   offset_probe_.setZero(m_);
   offset_probe_[slider] = 1.0;
@@ -54,7 +55,7 @@ double PeriodicSolver::force_by_offset(Index slider) {
   const bool solved = correct();
   difference_.swap(best_);
   std::swap(offset_probe_, offset_shift_);
-  return solved ? std::clamp(correction_[2 * n_ + slider], 0.05, 1.0) : 1.0;
+  return solved ? std::clamp(correction_[2 * n_ + slider], stiffest, 1.0) : 1.0;
 }
 
 }  // namespace rubato::integrate

@@ -80,6 +80,10 @@ class StepperMap final : public PeriodMap {
     write_state(consistent_start(*system_, std::move(start)), states, lane);
   }
 
+  void displace(const Vector& by, LaneArray& states, Index lane) override {
+    states.col(lane).segment(0, n_) += by.array();
+  }
+
   double observed_size(const LaneArray& differences, Index lane) const override {
     double size = 0.0;
     for (const auto& observed : request_.observed)

@@ -44,24 +44,6 @@ void TimeMarchingSolver::start_states(Engine& engine, std::span<const Excitation
   }
 }
 
-// Puts the offsets of sliders that never slip to zero, or as near as they do not slip. Returns whether any was not.
-bool TimeMarchingSolver::release_offsets(const Engine& engine, Index lane, const Excitation& excitation,
-                                         const SteadyResponse& response, LaneArray& states) const {
-  bool has_changed = false;
-  for (Index i = 0; i < slider_stiffness_.size(); ++i) {
-    if (response.slip_share[i] > 0.0 || excitation.limits[i] == 0.0) continue;
-    const double stiffness = slider_stiffness_[i], limit = excitation.limits[i];
-    const auto u = engine.records[static_cast<std::size_t>(lane)].displacement.row(i);
-    const double least = -limit - stiffness * u.minCoeff(), most = limit - stiffness * u.maxCoeff();
-    const double offset = least <= most ? std::clamp(0.0, least, most) : 0.5 * (least + most);
-    constexpr double round_off = 1e-9;
-    if (!(std::abs(offset - response.offset[i]) > round_off * limit)) continue;
-    states(engine.map->slip_start() + i, lane) = -offset / stiffness;
-    has_changed = true;
-  }
-  return has_changed;
-}
-
 void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excitations, SteadyStart start, int steps,
                               bool is_full, LaneArray& states, std::span<SteadyResponse> responses) const {
   OrbitSearchOptions search;
