@@ -161,6 +161,14 @@ TEST(ExpressionError, GivesThePlaceInTheFileAndInTheExpression) {
             "pi");
 }
 
+// It was read as if it were not there: all coordinates were moved.
+TEST(BaseMotionError, RefusesADirectionThatNamesNothing) {
+  EXPECT_EQ(
+      verdict_with("[[force]]", "[base_motion]\namplitude = 1\nfrequency = 1\ndirection = {}\n\n[[force]]"),
+      "study.toml:35:13: error: [base_motion]: direction names nothing that the ground moves; leave it out where it "
+      "moves all coordinates alike");
+}
+
 TEST(BaseMotionError, RefusesWhatHasNoKnownAcceleration) {
   EXPECT_EQ(verdict_with("[[force]]", "[base_motion]\nexpression = \"t\"\nof = \"displacement\"\n\n[[force]]"),
             "study.toml:34:6: error: [base_motion]: of = \"displacement\" is for harmonic motion, whose acceleration "

@@ -152,7 +152,12 @@ std::optional<BaseMotionDescription> read_base_motion(TomlReader& root, const St
     throw InvalidInput(reader->where("of"), fmt::format("[base_motion]: of = \"{}\" is for harmonic motion, whose "
                                                         "acceleration is known; give the acceleration",
                                                         *of));
-  motion.direction = reader->optional_quantities_by_name("direction").value_or(decltype(motion.direction){});
+  const auto direction = reader->optional_quantities_by_name("direction");
+  if (direction && direction->empty())
+    throw InvalidInput(reader->where("direction"),
+                       "[base_motion]: direction names nothing that the ground moves; leave it out where it moves all "
+                       "coordinates alike");
+  motion.direction = direction.value_or(decltype(motion.direction){});
   reader->finish();
   return motion;
 }
