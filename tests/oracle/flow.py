@@ -1,9 +1,8 @@
 """The motion of a structure between located transitions, by matrix exponentials of its dense model.
 
-While no slider or stop changes its state the structure is linear: `y' = A y + sum of G_j g_j(t)`. The laws `g_j` are
-fitted by polynomials over a stride, whose derivatives join the state, so that one matrix exponential (of a stride or of
-a stride halved any number of times) moves everything along without an error but round-off. Transitions are found by
-halving the stride.
+While no slider or stop changes its state the structure is linear: `y' = A y + sum of G_j g_j(t)`. The laws `g_j` join the
+state (`laws.py`), so that one matrix exponential (of a stride or of a stride halved any number of times) moves everything
+along without an error but round-off. Transitions are found by halving the stride.
 """
 
 import itertools
@@ -12,30 +11,20 @@ import math
 import numpy
 import scipy.linalg
 
+import laws as laws_of_time
 from study import Unreadable
 
-DEGREE = 7
 STICK, OPEN, PUSH, SLACK = 0, "open", "push", "slack"
-
-
-class _Derivative:
-    """The law of a moving support, or one of its derivatives."""
-
-    def __init__(self, law, order):
-        self.law, self.order = law, order
-
-    def value(self, t, side=0):
-        return self.law.motion(t, side)[self.order]
 
 
 class Flow:
     """Stands at `t` with displacements `q` and velocities `v` of all coordinates."""
 
-    def __init__(self, model, begin, end, q, v, slips=None, most_strides=60000):
+    def __init__(self, model, begin, end, q, v, slips=None, most_strides=300000):
         self.model, self.end = model, end
         self.moved = [i for i, _ in model.moving]
         self.free = [i for i in range(len(model.names)) if i not in self.moved]
-        f, p = self.free, self.moved
+        f = self.free
         if not f:
             raise Unreadable("nothing moves freely")
         squares, self.phi = scipy.linalg.eigh(model.K[numpy.ix_(f, f)], model.M[numpy.ix_(f, f)])
@@ -47,21 +36,23 @@ class Flow:
         laws = [(vector[f], law) for vector, law in model.loads if numpy.any(vector[f])]
         self.switches = sorted({s for _, law in model.loads for s in law.switches(begin, end)}
                                | {s for _, law in model.moving for s in law.switches(begin, end)})
+        laws = [(vector, laws_of_time.of_load(law)) for vector, law in laws]
         for i, law in model.moving:
-            laws.append((-model.K[f, i], _Derivative(law, 0)))
-            laws.append((-model.C[f, i], _Derivative(law, 1)))
-            laws.append((-model.M[f, i], _Derivative(law, 2)))
+            laws += [(-matrix[f, i], laws_of_time.of_support(law, derivative))
+                     for derivative, matrix in enumerate((model.K, model.C, model.M))]
         self.laws = [law for _, law in laws]
         self.modal_loads = [self.phi.T @ vector for vector, _ in laws]
         self.sliders, self.stops = model.sliders, model.stops
+        self.contacts = bool(self.sliders or self.stops)
+        self._exact = all(law.exact for law in self.laws)
+        self._pushed = None  # the constant load of the contacts, once it is known
         self.b_sliders = [self.phi.T @ s.b[f] for s in self.sliders]
         self.b_stops = [self.phi.T @ s.b[f] for s in self.stops]
         fastest = self.fastest = self._fastest()
         stride = span / 16
         for law in self.laws:
-            inner = law.law if isinstance(law, _Derivative) else law
-            stride = min(stride, 0.08 * inner.shortest_time(begin, end))
-        if self.sliders or self.stops:
+            stride = min(stride, law.longest_stride(begin, end, self.contacts))
+        if self.contacts:
             stride = min(stride, 2 * math.pi / fastest / 12 if fastest > 0 else stride)
         self.stride = stride
         if span / stride > most_strides:
@@ -145,9 +136,7 @@ class Flow:
         return stiffness, damping
 
     def _constant(self):
-        """The constant load of the contacts, in modal coordinates; None without contacts."""
-        if not (self.sliders or self.stops):
-            return None
+        """The constant load of the contacts, in modal coordinates."""
         constant = numpy.zeros(self.n)
         for i, b in enumerate(self.b_sliders):
             slider = self.sliders[i]
@@ -161,69 +150,37 @@ class Flow:
     def _propagator(self, level):
         key = (tuple(self.modes), tuple(self.stop_modes), level)
         if key not in self._propagators:
-            n, laws, order = self.n, len(self.laws), DEGREE + 1
+            n = self.n
             stiffness, damping = self._linear()
-            size = 2 * n + laws * order
+            size = 2 * n + sum(law.size for law in self.laws) + (n if self.contacts else 0)
             a = numpy.zeros((size, size))
             a[:n, n:2 * n] = numpy.diag(self.scale)
             a[n:2 * n, :n] = -stiffness / self.scale[None, :]
             a[n:2 * n, n:2 * n] = -damping
-            for j in range(laws):
-                column = 2 * n + j * order
-                a[n:2 * n, column] = self.modal_loads[j]
-                for k in range(order - 1):
-                    a[column + k, column + k + 1] = 1 / self.stride
+            at = 2 * n
+            for load, law in zip(self.modal_loads, self.laws):
+                a[n:2 * n, at] = load
+                a[at:at + law.size, at:at + law.size] = law.generator(self.stride)
+                at += law.size
+            if self.contacts:
+                a[n:2 * n, at:] = numpy.eye(n)
             self._propagators[key] = scipy.linalg.expm(a * self._ladder[level])
         return self._propagators[key]
 
     def _fit(self, span):
-        """Derivatives of the laws at t, times stride^k, from polynomials over `span`; whether they are good."""
-        order = DEGREE + 1
-        x = 0.5 * (1 - numpy.cos(math.pi * numpy.arange(order) / DEGREE))
-        limit = self.piece_end
-        coefficients, good = numpy.zeros((len(self.laws), order)), True
-        inverse = _vandermonde_inverse()
-        for j, law in enumerate(self.laws):
-            values = numpy.array([self._law(law, self.t + span * xi, limit) for xi in x])
-            c = inverse @ values
-            for xi in (0.037, 0.31, 0.69, 0.963):
-                there = self._law(law, self.t + span * xi, limit)
-                size = max(abs(there), numpy.max(numpy.abs(values)), 1e-3 * self._largest[j])
-                if abs(numpy.polyval(c[::-1], xi) - there) > 1e-10 * size:
-                    good = False
-            self._largest[j] = max(self._largest[j], numpy.max(numpy.abs(values)))
-            coefficients[j] = [c[k] * math.factorial(k) * (self.stride / span)**k for k in range(order)]
-        return coefficients, good
-
-    def _law(self, law, t, limit):
-        if t <= self.piece_begin:
-            return law.value(self.piece_begin, 1)
-        if t >= limit:
-            return law.value(limit, -1)
-        return law.value(t, 0)
+        """The state of the laws at t for the next `span`, and whether it is good."""
+        states = [law.state(self.t, span, self.piece_begin, self.piece_end, self.stride) for law in self.laws]
+        return (numpy.concatenate([state for state, _ in states]) if states else numpy.zeros(0),
+                all(good for _, good in states))
 
     def _try(self, level, coefficients):
         """The state after the stride of this level; nothing is changed."""
-        y = numpy.concatenate([self.eta * self.scale, self.rate, coefficients.ravel()])
-        constant = self._constant()
-        moved = self._propagator(level) @ y
+        if self.contacts and self._pushed is None:
+            self._pushed = self._constant()
+        y = [self.eta * self.scale, self.rate, coefficients] + ([self._pushed] if self.contacts else [])
+        moved = self._propagator(level) @ numpy.concatenate(y)
         n = self.n
-        if constant is not None:
-            moved[:2 * n] += self._constant_response(level) @ constant
-        return moved[:n] / self.scale, moved[n:2 * n], moved[2 * n:].reshape(len(self.laws), DEGREE + 1)
-
-    def _constant_response(self, level):
-        key = (tuple(self.modes), tuple(self.stop_modes), level, "constant")
-        if key not in self._propagators:
-            n = self.n
-            stiffness, damping = self._linear()
-            a = numpy.zeros((3 * n, 3 * n))
-            a[:n, n:2 * n] = numpy.diag(self.scale)
-            a[n:2 * n, :n] = -stiffness / self.scale[None, :]
-            a[n:2 * n, n:2 * n] = -damping
-            a[n:2 * n, 2 * n:] = numpy.eye(n)
-            self._propagators[key] = scipy.linalg.expm(a * self._ladder[level])[:2 * n, 2 * n:]
-        return self._propagators[key]
+        return moved[:n] / self.scale, moved[n:2 * n], moved[2 * n:2 * n + len(coefficients)]
 
     # ---- contacts
 
@@ -246,8 +203,12 @@ class Flow:
                 guards.append(min(-force, depth * stop.stiffness))
         return numpy.array(guards)
 
+    def restart(self, t, eta, rate, slips):
+        """From another state, at the start of a piece."""
+        self.t, self.eta, self.rate, self.slips = t, eta, rate, list(slips)
+        self._start()
+
     def _start(self):
-        self._largest = numpy.zeros(len(self.laws))
         self.modes = [STICK] * len(self.sliders)
         self.stop_modes = [OPEN] * len(self.stops)
         self.piece_begin = self.t
@@ -256,7 +217,7 @@ class Flow:
             force = slider.stiffness * (self.b_sliders[i] @ self.eta - self.slips[i])
             if abs(force) > slider.limit:
                 self.slips[i] = self.b_sliders[i] @ self.eta - math.copysign(slider.limit, force) / slider.stiffness
-        if self.sliders or self.stops:
+        if self.contacts:
             self._settle()
 
     def _settle(self):
@@ -286,6 +247,7 @@ class Flow:
 
         def take(combination):
             self.modes, self.stop_modes = list(combination[:m]), list(combination[m:])
+            self._pushed = None
         if len(combinations) == 1:
             take(combinations[0])
             return
@@ -312,10 +274,10 @@ class Flow:
             if self.t >= self.piece_end and self.piece_end < self.end:
                 self.piece_begin = self.piece_end
                 self.piece_end = next((s for s in self.switches if s > self.piece_begin), self.end)
-                if self.sliders or self.stops:
+                if self.contacts:
                     self._settle()
             goal = min(target, self.piece_end)
-            span = min(goal - self.t, self.stride)
+            span = goal - self.t if self._exact else min(goal - self.t, self.stride)
             if span <= self._ladder[-3]:
                 self.t = goal
                 continue
@@ -325,7 +287,7 @@ class Flow:
                 coefficients, good = self._fit(span)
             stop = goal if span == goal - self.t else self.t + span
             while coefficients is not None and stop - self.t > self._ladder[-3]:
-                level = next(k for k, h in enumerate(self._ladder) if h <= (stop - self.t) * (1 + 1e-9))
+                level = max(0, math.ceil(math.log2(self.stride / ((stop - self.t) * (1 + 1e-9)))))
                 coefficients = self._move(level, coefficients)
                 if watch:
                     watch(self)
@@ -336,7 +298,7 @@ class Flow:
         """Takes the stride of a level, or goes to the transition in it. Returns the laws there, None after a
         transition."""
         eta, rate, later = self._try(level, coefficients)
-        if not (self.sliders or self.stops):
+        if not self.contacts:
             self.eta, self.rate, self.t = eta, rate, self.t + self._ladder[level]
             return later
         guards = self._guards(eta, rate)
@@ -387,14 +349,3 @@ class Flow:
             noise.append(4e-15 * (size if self.stop_modes[i] == OPEN
                                   else self.stops[i].stiffness * size + self.stops[i].damping * speed))
         return numpy.array(noise)
-
-
-_inverse = None
-
-
-def _vandermonde_inverse():
-    global _inverse
-    if _inverse is None:
-        x = 0.5 * (1 - numpy.cos(math.pi * numpy.arange(DEGREE + 1) / DEGREE))
-        _inverse = numpy.linalg.inv(numpy.vander(x, increasing=True))
-    return _inverse

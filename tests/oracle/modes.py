@@ -58,4 +58,7 @@ def residual(model, limit, s, shape):
     terms = (abs(s)**2 * numpy.abs(mass) @ numpy.abs(x) + abs(s) * numpy.abs(damping) @ numpy.abs(x)
              + numpy.abs(stiffness) @ numpy.abs(x))
     left = numpy.abs(s * s * (mass @ x) + s * (damping @ x) + stiffness @ x)
+    root = numpy.sqrt(numpy.diag(mass))
+    if abs(s)**2 < 1e-13 * numpy.max(numpy.diag(stiffness) / root**2):  # rigid: what does not move does so to round-off
+        terms = terms + 1e-3 * numpy.abs(stiffness) @ (numpy.max(numpy.abs(x) * root) / root)
     return numpy.max(left / (1e-8 * abs(s)**2 * numpy.sqrt(numpy.diag(mass)) + 1e-12 * terms + 1e-300))

@@ -64,14 +64,23 @@ def laid(path, folder):
     return folder / path.name
 
 
+def record(file, study, model, verdict, path):
+    """A line of tab-separated values, so that what was found outlives a run that is cut off."""
+    cells = [study, model, verdict.analysis, verdict.kind, verdict.outcome, " ".join(verdict.what.split()), f"{verdict.error:.3g}",
+             f"{verdict.allowed:.3g}", " ".join(sorted(keys_of(path, verdict.analysis)))]
+    with open(file, "a") as out:
+        out.write("\t".join(map(str, cells)) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("command")
     parser.add_argument("studies", nargs="+", help="seeds, ranges of them (1-200), study files, or a list of these: @FILE")
-    parser.add_argument("--keep", help="a folder for the studies on which the two differ")
+    parser.add_argument("--keep", help="a folder for the studies and results where the two differ or the command fails")
     parser.add_argument("--verbose", action="store_true")
     parser.add_argument("--first", action="store_true", help="end at the first study that differs")
     parser.add_argument("--keys", action="store_true", help="count the outcomes by the keys of the study as well")
+    parser.add_argument("--record", help="a file to which every verdict adds a line")
     parser.add_argument("--seconds", type=float, default=20, help="of processor time for an analysis by the oracle")
     options = parser.parse_args()
     compare.ORACLE_SECONDS = options.seconds
@@ -88,16 +97,22 @@ def main():
                 path, kind = generate(seed, folder)
             else:
                 path, kind = laid(seed, folder), "file"
+            told = []
             for verdict in compare.judge(path, options.command, folder / "results" if options.keep else None):
                 counts[verdict.kind][verdict.outcome] += 1
                 for key in keys_of(path, verdict.analysis) if options.keys else []:
                     by_key[key][verdict.outcome] += 1
+                if options.record:
+                    record(options.record, name, kind, verdict, path)
                 if options.verbose:
                     print(f"  {resource.getrusage(resource.RUSAGE_SELF).ru_utime:.1f} {resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime:.1f}")
                 if verdict.outcome in ("differs", "failed") or options.verbose:
                     print(f"{name} ({kind}): {verdict}", flush=True)
+                told += [verdict] if verdict.outcome in ("differs", "failed") else []
                 if verdict.outcome == "differs":
                     differing.append(str(name))
+            if options.keep and not told:
+                shutil.rmtree(folder)
     print(f"\n{'kind':<40}" + "".join(f"{o:>10}" for o in OUTCOMES))
     for kind in sorted(counts):
         print(f"{kind:<40}" + "".join(f"{counts[kind][o]:>10}" for o in OUTCOMES))

@@ -87,25 +87,60 @@ def sticks(model):
                for slider in model.sliders)
 
 
-def march(model, samples=240, most_periods=400, settled=1e-8):
-    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, and the fundamental."""
-    fundamental, loads = orders_of(model)
+def _extrapolated(starts, changes):
+    """Anderson's mixing: where the changes of the last periods, taken as linear, vanish."""
+    x, f = starts[-1], changes[-1]
+    if len(starts) < 2:
+        return x + f
+    dx = numpy.diff(numpy.array(starts), axis=0).T
+    df = numpy.diff(numpy.array(changes), axis=0).T
+    gamma = numpy.linalg.lstsq(df, f, rcond=1e-10)[0]
+    return x + f - (dx + df) @ gamma
+
+
+def march(model, samples=240, most_periods=400, settled=1e-9):
+    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, and the fundamental.
+
+    Structures without stops have one (but for what sliders that never slip remember), so that the march may be cut short
+    by extrapolation: what it ends with repeats all the same.
+    """
+    fundamental, _ = orders_of(model)
     period = 2 * math.pi / fundamental
-    fundamental_model = model
-    flow = Flow(fundamental_model, 0.0, most_periods * period, model.q0 * 0, model.v0 * 0,
-                [0.0] * len(model.sliders), most_strides=1e9)
-    before = None
+    flow = Flow(model, 0.0, most_periods * period, model.q0 * 0, model.v0 * 0, [0.0] * len(model.sliders),
+                most_strides=1e9)
+    stiffness = numpy.array([slider.stiffness for slider in model.sliders])
+
+    def state():
+        forces = [flow.slider_force(i) for i in range(len(stiffness))]
+        return numpy.concatenate([flow.eta * flow.scale, flow.rate, forces / numpy.sqrt(stiffness)])
+
+    def put(x):
+        n = flow.n
+        eta = x[:n] / flow.scale
+        strains = [b @ eta for b in flow.b_sliders]
+        flow.restart(0.0, eta, x[n:2 * n], strains - x[2 * n:] / numpy.sqrt(stiffness))
+    x, starts, changes, plain, best = state(), [], [], 3, math.inf
     for k in range(most_periods):
-        state = numpy.concatenate([flow.eta * flow.scale, flow.rate,
-                                   [flow.slider_force(i) for i in range(len(model.sliders))]])
-        if before is not None:
-            change = numpy.linalg.norm(state - before) / max(numpy.linalg.norm(state), 1e-300)
-            if change < settled:
-                break
-        before = state
-        flow.advance((k + 1) * period)
+        if not model.stops:
+            put(x)
+        begin = flow.t
+        flow.advance(begin + period)
+        after = state()
+        change = after - x
+        size = numpy.linalg.norm(change) / max(numpy.linalg.norm(after), 1e-300)
+        if size < settled:
+            break
+        starts.append(x)
+        changes.append(change)
+        plain -= 1
+        if size > 4 * best:
+            starts, changes, plain = [], [], 4
+        best = min(best, size)
+        x = after if plain > 0 or model.stops else _extrapolated(starts[-12:], changes[-12:])
     else:
         raise Unreadable("the march does not settle")
+    if not model.stops:
+        put(after)
     begin = flow.t
     rows = {"q": [], "v": [], "force": [], "slip": []}
     for j in range(samples):
