@@ -4,15 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rubato::analysis {
 
-MechanismInterpolation::MechanismInterpolation(const system::Mechanism& mechanism)
-    : mechanism_(mechanism), equations_(mechanism), travel_(mechanism.size()), part_(mechanism.size()) {}
+MechanismInterpolation::MechanismInterpolation(const system::Mechanism& mechanism, std::vector<double> kinks)
+    : mechanism_(mechanism),
+      equations_(mechanism),
+      kinks_(std::move(kinks)),
+      travel_(mechanism.size()),
+      part_(mechanism.size()) {}
 
 void MechanismInterpolation::add(const system::State& state, model::Side side) {
   newest_ = (newest_ + 1) % most_knots;
   count_ = std::min(count_ + 1, most_knots);
+  since_kink_ = std::min(since_kink_ + 1, most_knots);
   Knot& newest = knot(0);
   newest.state = state;
   newest.side = side;
@@ -28,6 +34,7 @@ void MechanismInterpolation::take(const system::State& before, const system::Sta
     count_ = 0;
     add(before, model::Side::right);
   }
+  if (!goes_on || std::binary_search(kinks_.begin(), kinks_.end(), before.t)) since_kink_ = 1;
   add(after, model::Side::left);
   last_acceleration_ = after.acceleration;
 }
@@ -67,8 +74,12 @@ void MechanismInterpolation::at(double t, system::State& state) {
     mechanism_.difference(before.q, end.q, part_);
     travel_ += weight * part_;
     state.v += weight * end.v;
-    state.acceleration += weight * end.acceleration;
-    state.multiplier += weight * end.multiplier;
+  }
+  const std::size_t smooth = std::min(count, since_kink_);
+  for (std::size_t age = 0; age < smooth; ++age) {
+    const double weight = lagrange_weight({times.data(), smooth}, age, t);
+    state.acceleration += weight * knot(age).state.acceleration;
+    state.multiplier += weight * knot(age).state.multiplier;
   }
   mechanism_.retract(before.q, travel_, state.q);
 }

@@ -22,7 +22,7 @@ class MechanismObserver final : public integrate::Observer {
         timeline_(timeline),
         context_(context),
         ledger_(mechanism),
-        between_(mechanism),
+        between_(mechanism, timeline.breakpoints(plan.start.t, plan.duration)),
         equations_(mechanism),
         drift_(mechanism.constraint_count()) {}
 
