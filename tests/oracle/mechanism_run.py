@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import numpy as np  # noqa: E402
 
 from random_mechanism import generate  # noqa: E402
+from run import keys_of  # noqa: E402
 from mechanism import Mechanism  # noqa: E402
 from mechanism.judge import LOOSER, judge, unit_of  # noqa: E402
 from mechanism.march import March  # noqa: E402
@@ -32,6 +33,8 @@ COMMAND_SECONDS = 20
 # Those that take the oracle less than two seconds of its processor time each.
 SAMPLE = [0, 1, 3, 4, 5, 6, 8, 9, 10, 12, 13, 14, 16, 20, 21, 24, 25, 27, 29, 33, 34, 35, 36, 37, 39, 40, 41, 42, 45, 48, 49,
           50, 51, 53, 54, 55, 56, 57]
+# Those by which something was found.
+SAMPLE += [1004, 1131, 1190, 1222, 1348, 1358, 1367]
 OUTCOMES = ["agrees", "differs", "refused", "failed", "skipped"]
 
 
@@ -127,26 +130,33 @@ def main():
     parser.add_argument("--sample", type=int, choices=(0, 1), help="half of the seeds of the suite")
     parser.add_argument("--keep", help="a folder for the studies")
     parser.add_argument("--verbose", action="store_true")
+    parser.add_argument("--first", action="store_true", help="end at the first study that differs")
+    parser.add_argument("--keys", action="store_true", help="count the outcomes by the keys of the study as well")
     options = parser.parse_args()
     np.seterr(all="ignore")
     counts = collections.defaultdict(collections.Counter)
+    by_key = collections.defaultdict(collections.Counter)
     differing = []
     for seed in SAMPLE[options.sample :: 2] if options.sample is not None else range(options.first, options.last + 1):
+        if options.first and differing:
+            break
         began = resource.getrusage(resource.RUSAGE_SELF).ru_utime
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(options.keep or scratch) / str(seed)
             path = generate(seed, folder)
             for name, kind, outcome, what in verdicts(options.command, path, folder / "results"):
                 counts[kind][outcome] += 1
+                for key in keys_of(path, name) if options.keys else []:
+                    by_key[key][outcome] += 1
                 if outcome == "differs":
                     differing.append(seed)
                 if outcome == "differs" or options.verbose:
                     print(f"seed {seed}: {name} ({kind}): {outcome}: {what}", flush=True)
         if options.verbose:
             print(f"seed {seed}: {resource.getrusage(resource.RUSAGE_SELF).ru_utime - began:.1f} s of the oracle", flush=True)
-    print(f"\n{'kind':<12}" + "".join(f"{o:>10}" for o in OUTCOMES))
-    for kind in sorted(counts):
-        print(f"{kind:<12}" + "".join(f"{counts[kind][o]:>10}" for o in OUTCOMES))
+    print(f"\n{'kind':<32}" + "".join(f"{o:>10}" for o in OUTCOMES))
+    for name, outcomes in sorted(counts.items()) + sorted(by_key.items()):
+        print(f"{name:<32}" + "".join(f"{outcomes[o]:>10}" for o in OUTCOMES))
     total = sum(sum(c.values()) for c in counts.values())
     skipped = sum(c["skipped"] for c in counts.values())
     print(f"seeds that differ: {sorted(set(differing))}; skipped {skipped} of {total}")

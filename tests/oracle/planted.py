@@ -5,6 +5,9 @@ studies once for each fault until one differs, and prints the fault with the stu
     planted.py prepare CLONE
     cmake --build CLONE/build/audit --target rubato_command
     planted.py judge CLONE/build/audit/apps/rubato/rubato @sample.txt 1-60
+
+`planted.py --mechanisms prepare CLONE` and `planted.py --mechanisms judge COMMAND 0 60` take the faults of
+`planted_faults_mechanisms.toml` and the studies of `mechanism_run.py`.
 """
 
 import os
@@ -24,8 +27,11 @@ namespace {
 """
 
 
+FILE, RUN = "planted_faults.toml", ["run.py", "--seconds", "5"]
+
+
 def faults():
-    return tomllib.loads((HERE / "planted_faults.toml").read_text())["fault"]
+    return tomllib.loads((HERE / FILE).read_text())["fault"]
 
 
 def prepare(clone):
@@ -52,7 +58,7 @@ def judge(command, words):
     found = 0
     for number, fault in enumerate(faults(), 1):
         environment = {**os.environ, "RUBATO_PLANTED_FAULT": str(number)}
-        run = subprocess.run([sys.executable, str(HERE / "run.py"), command, *words, "--first", "--seconds", "5"],
+        run = subprocess.run([sys.executable, str(HERE / RUN[0]), command, *words, "--first", *RUN[1:]],
                              env=environment, capture_output=True, text=True)
         told = [line for line in run.stdout.splitlines() if "differs" in line and ":" in line]
         found += run.returncode == 1
@@ -63,6 +69,9 @@ def judge(command, words):
 
 
 if __name__ == "__main__":
+    if sys.argv[1] == "--mechanisms":
+        sys.argv.pop(1)
+        FILE, RUN = "planted_faults_mechanisms.toml", ["mechanism_run.py"]
     if sys.argv[1] == "prepare":
         prepare(sys.argv[2])
     else:

@@ -111,8 +111,6 @@ def joints(march, state, t, kin, a, mu):
             row[f"{j.name}.reaction_lock_{what} {unit}"] = lock_mu.get(j.name, 0.0)
         if j.way is not None and (j.stiffness or j.damping or j.formula is not None or j.points is not None or j.lock is not None
                                   and j.lock["stiffness"]):
-            if j.type == "screw":       # of the way along the axis, on which no law acts
-                row[f"{j.name}.law_force [N]"] = 0.0
             row[f"{j.name}.law_{what} {unit}"] = march.law_force.get(j.name, 0.0)
     for d in march.dry + march.immobile:
         if d.resting or d in march.immobile:

@@ -80,6 +80,10 @@ class Events:
         if kind == "meets":
             item.held = True
             if item.kind == "latch":
+                if item.joint.points is not None and not item.done:      # the law ends, and what it stored
+                    ways = self.model.way_map @ self.model.scalars(state)[0] + self.model.way_constant
+                    self.lost += self._table(item.joint, ways[item.joint.way])[1]
+                    self.ended_laws = True
                 item.done = True
             if item.rigid:
                 for d in self.dry:

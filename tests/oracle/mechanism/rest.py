@@ -123,7 +123,7 @@ def equilibrium(march, velocities=False, state=None, t=0.0):
 
 
 def state_of_row(march, row):
-    """The configuration that a row of results tells, with the turns of the joints' angles; None where it leaves out a coordinate."""
+    """The state that a row of results tells, with the turns of the joints' angles; None where it leaves out a coordinate."""
     m = march.model
     state = m.start_state()
     turned = np.zeros((len(m.names), 3))
@@ -140,7 +140,11 @@ def state_of_row(march, row):
     for p in {int(c) // 6 for c in m.free if c % 6 >= 3}:
         angle[p] = turned[p, 2]
         q[p] = quaternion_of(turned[p])
-    state = State(state.r, q, state.u, angle, state.turns)
+    u = state.u.copy()
+    for k, c in enumerate(m.free):
+        p, i = divmod(int(c), 6)
+        u[k] = row.get(f"{m.names[p]}.{LETTERS[i]}." + ("velocity [m/s]" if i < 3 else "angular_velocity [rad/s]"), u[k])
+    state = State(state.r, q, u, angle, state.turns)
     if len(m.atans):
         state.turns = m.scalars(state)[0][m.first_atan : m.first_atan + len(m.atans)]
         for c, constant in zip(m.coordinates, m.way_constant):
