@@ -1,6 +1,8 @@
 #include <rubato/analysis/joint_laws.hpp>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace rubato::analysis {
 
@@ -13,6 +15,10 @@ JointLaws::JointLaws(const system::Mechanism& mechanism) {
   };
   for (const auto& joint : mechanism.model().joint_coordinates) take(joint.name, joint.s);
   for (const auto& joint : mechanism.model().space_coordinates) take(joint.name, joint.s);
+  // The laws of a screw are of its angle: of its way, which has the same places, they say nothing.
+  std::erase_if(sliding_, [&](const Law& law) {
+    return std::any_of(turning_.begin(), turning_.end(), [&](const Law& other) { return other.name == law.name; });
+  });
   force_.resize(model::FreeCoordinate::most_places);
   slope_.resize(model::FreeCoordinate::most_places);
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace rubato::system {
@@ -131,6 +132,17 @@ void Mechanism::coordinate_values(const Vector& q, Vector& out) const {
   for (Index i = 0; i < size(); ++i)
     if (const Index number = number_[static_cast<std::size_t>(i)]; number >= 0) out[i] = q[number];
   for (const Turn& turn : turns_) put(numerics::vector_of(rotation_in(q, turn.quaternion)), turn.place, out);
+}
+
+double Mechanism::extent(const Vector& q) const {
+  const Index dimension = model_.dimension, numbers = model_.numbers_a_node();
+  Vector low = Vector::Constant(dimension, HUGE_VAL), high = -low;
+  for (Index node = 0; node < static_cast<Index>(model_.nodes.size()); ++node) {
+    low = low.cwiseMin(q.segment(node * numbers, dimension));
+    high = high.cwiseMax(q.segment(node * numbers, dimension));
+  }
+  const double diagonal = (high - low).norm();
+  return diagonal > 0.0 ? diagonal : 1.0;
 }
 
 void Mechanism::times_mass(const Vector& x, Vector& out) const {

@@ -36,6 +36,8 @@ class Mechanism {
   /// The state at t = 0 as given: not yet consistent.
   const State& start() const { return start_; }
   double reference() const { return model_.reference; }
+  /// The diagonal of the box around all positions [m]; rotations have no size. Of a single point 1 m.
+  double extent(const Vector& q) const;
   /// Constant external force: weights [n] [N].
   const Vector& weight() const { return weight_; }
 

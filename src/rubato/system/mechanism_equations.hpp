@@ -99,7 +99,13 @@ class MechanismEquations {
   /// A friction that, alone on its coordinate, would move it by 1e-10 of the model's size (of a radian) in the run
   /// [N], [N m]: what joints that nothing presses hold is round-off.
   double negligible_friction(std::size_t friction) const { return negligible_.empty() ? 0.0 : negligible_[friction]; }
-  /// What is to be compared with it: the size of friction_force(), of two that share a limit that of both [N], [N m].
+  /// The rate at which its coordinate would move by as little in the run: where nothing moves, velocities are round-off
+  /// [rad/s], [m/s].
+  double negligible_rate(std::size_t friction) const {
+    return negligible_rate_.empty() ? 0.0 : negligible_rate_[friction];
+  }
+  /// What is to be compared with negligible_friction(): the size of friction_force(), of two that share a limit that of
+  /// both [N], [N m].
   double friction_size(std::size_t friction, const Vector& multiplier) const;
   /// Whether another friction, which shares its limit, leads this one.
   bool is_led(std::size_t friction) const;
@@ -172,8 +178,8 @@ class MechanismEquations {
   std::vector<double> row_seen_;                   // G M^-1 G^T of a row by the diagonal of M; 0: it is open [c]
   std::vector<double> jacobian_;                   // of all joints
   std::vector<double> local_, matrix_, velocity_, acceleration_;
-  std::vector<double> negligible_;  // of each friction
-  Vector excess_;                   // of the reactions that friction follows, over the multipliers [c]
+  std::vector<double> negligible_, negligible_rate_;  // of each friction
+  Vector excess_;  // of the reactions that friction follows, over the multipliers [c]
   model::Motion motion_;
   numerics::KktFactor factor_;
   int factorisations_ = 0;

@@ -22,8 +22,9 @@ void MechanismEquations::exceed_multipliers(const Vector& lag, double share) {
 void MechanismEquations::set_duration(double duration) {
   constexpr double nothing = 1e-10;
   const Vector& q = mechanism_.start().q;
-  const double size = 1.0 + (q.size() > 0 ? q.cwiseAbs().maxCoeff() : 0.0);
+  const double size = mechanism_.extent(q);
   negligible_.clear();
+  negligible_rate_.clear();
   const auto& frictions = mechanism_.model().frictions;
   for (std::size_t i = 0; i < frictions.size(); ++i) {
     double slope[most_friction_places], mobility = 0.0;
@@ -33,6 +34,7 @@ void MechanismEquations::set_duration(double duration) {
       mobility +=
           slope[place.local[k]] * slope[place.local[k]] * inverse_mass_[static_cast<std::size_t>(place.place[k])];
     const double way = nothing * (frictions[i].s.is_angle() ? 1.0 : size);
+    negligible_rate_.push_back(way / duration);
     negligible_.push_back(mobility > 0.0 ? 2.0 * way / (duration * duration * mobility) : 0.0);
   }
 }

@@ -150,7 +150,7 @@ class March(ReadsFriction, Instant, Events):
                 self.immobile.append(d)
             elif held.any():
                 raise Refused("a dry joint that the others leave one of two motions")
-            self.led = self.led or led.any()
+            self.led = self.led or (led & ~held).any()
         if self.immobile and any(d.rows for d in self.dry):
             raise Refused("friction of a reaction that is not determined")
 

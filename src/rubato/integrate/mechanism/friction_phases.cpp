@@ -150,13 +150,13 @@ bool settle_new_velocities(system::MechanismEquations& equations, system::State&
     if (equations.is_led(i)) continue;
     if (frictions[i].partner >= 0) {
       const Eigen::Vector2d slip = equations.slip_velocity(i);
-      candidates[i] = slip.norm() <= 1e-10 * fastest;
+      candidates[i] = slip.norm() <= std::max(1e-10 * fastest, equations.negligible_rate(i));
       set_friction_phase(equations.mechanism().model(), state, i, friction_slides_up);
       set_slip_floor(equations.mechanism().model(), state, i, model::slip_floor_share * slip);
       continue;
     }
     const double rate = equations.friction_rate(i);
-    candidates[i] = std::abs(rate) <= 1e-10 * fastest;
+    candidates[i] = std::abs(rate) <= std::max(1e-10 * fastest, equations.negligible_rate(i));
     state.rubbing[i] = rate > 0.0 ? friction_slides_up : friction_slides_down;
   }
   return settle_friction(equations, state, candidates, ahead);

@@ -10,19 +10,6 @@ namespace {
 constexpr double first_shift = 1e-3, least_shift = 1e-12,
                  most_shift = 1e6;  // over the stiffness per mass of the mechanism
 
-/// The diagonal of the box around all positions; rotations have no size. Of a single point its distance from the
-/// origin, or 1 m.
-double extent_of(const system::Mechanism& mechanism, const Vector& q) {
-  const Index dimension = mechanism.model().dimension, numbers = mechanism.model().numbers_a_node();
-  Vector low = Vector::Constant(dimension, HUGE_VAL), high = -low;
-  for (Index node = 0; node < static_cast<Index>(mechanism.model().nodes.size()); ++node) {
-    low = low.cwiseMin(q.segment(node * numbers, dimension));
-    high = high.cwiseMax(q.segment(node * numbers, dimension));
-  }
-  const double diagonal = (high - low).norm();
-  return diagonal > 0.0 ? diagonal : 1.0;
-}
-
 class Search {
  public:
   Search(system::MechanismEquations& equations, const system::State& given, const EquilibriumPlan& plan)
@@ -36,7 +23,7 @@ class Search {
     product_.resize(n);
     constraint_.resize(c);
     next_ = given.q;
-    extent_ = extent_of(mechanism_, given.q);
+    extent_ = mechanism_.extent(given.q);
     (void)locks_.meet(found_.state, extent_);
     sizes_.resize(n);
     for (Index i = 0; i < n; ++i)
