@@ -129,10 +129,10 @@ def judge_transient(study, analysis, folder, tolerance):
     found = []
     errors, missing = differences(ours, theirs, keep, floor)
     # What is told of forces belongs to the state that is told, however far that is from ours: exactly at the ends of steps,
-    # to the error of the interpolation between them.
+    # to the error of the interpolation between them, which laws with kinks feel.
     belongs = {} if there is None else differences(there, theirs, keep, floor)[0]
     ends = "every" in analysis.get("output", {"every": 1})
-    exact = 1e-6 if ends else max(1e-6, 10 * tolerance)
+    exact = 1e-6 if ends else max(1e-6, MOST * tolerance)
     found += [Finding(analysis["name"], column, error, exact, "at the state told") for column, error in belongs.items()
               if not error <= exact]
     energy_file = pathlib.Path(folder) / f"{analysis['name']}.energy.csv"
