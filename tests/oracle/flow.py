@@ -303,6 +303,8 @@ class Flow:
             return later
         guards = self._guards(eta, rate)
         if guards.min() >= 0:
+            if level < 9 and self._may_touch(eta, rate, level):
+                return self._move(level + 1, coefficients)
             self._take(eta, rate, level)
             return later
         floor = numpy.minimum(self._guards(self.eta, self.rate), 0.0)
@@ -330,6 +332,23 @@ class Flow:
         if len(self.events) > 20000:
             raise Unreadable("too many transitions")
         return None
+
+    def _may_touch(self, eta, rate, level):
+        """Whether a contact may meet its border and return within the stride: it turns there, and so near that it could."""
+        for i, b in enumerate(self.b_sliders + self.b_stops):
+            before, after = b @ self.rate, b @ rate
+            if before * after >= 0:
+                continue
+            reach = (abs(before) + abs(after)) * self._ladder[level]
+            if i >= len(self.sliders):
+                near = abs(b @ eta - self.stops[i - len(self.sliders)].gap) < reach
+            else:
+                slider = self.sliders[i]
+                near = (self.modes[i] == STICK
+                        and slider.limit / slider.stiffness - abs(b @ eta - self.slips[i]) < reach)
+            if near:
+                return True
+        return False
 
     def _take(self, eta, rate, level):
         for i, b in enumerate(self.b_sliders):
