@@ -85,6 +85,7 @@ def _judge(path, command, folder):
             return [Verdict(failed.group(1) if failed else at_last, "too long", "skipped", TOO_LARGE)]
         message = " ".join(line for line in done.stderr.splitlines() if "error" in line or done.returncode == 2)[-600:]
         study = Study(path)
+        study.told = done.stderr
         if done.returncode == 2:
             return [Verdict("all", "all", "refused", message)]
         if done.returncode < 0:
