@@ -176,10 +176,13 @@ class Marcher {
     return !has_begun_anew_ && step < much_shorter * stagnant_step_;
   }
 
-  /// From the accelerations of equilibrium at the last accepted state; once a state.
+  /// From the accelerations of equilibrium at the last accepted state, once a state, with the step from which on the
+  /// error stayed: those after it were too short for no reason, down to where they are made of round-off.
   void begin_anew_here() {
     has_begun_anew_ = true;
     if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
+    wanted_ = stagnant_step_;
+    stagnant_error_ = 0.0;
     start_anew();
   }
 
