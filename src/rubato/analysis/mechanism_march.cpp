@@ -24,8 +24,9 @@ MechanismMarch::MechanismMarch(const MechanismPlan& plan, const system::Mechanis
   const TransientPlan& transient = plan.transient;
   const AutomaticStep& step = *transient.automatic;
   integrate::NewtonPlan newton;
-  newton.projects_velocities =
-      plan.project_velocities || std::holds_alternative<integrate::PiControl>(step.plan.controller);
+  const bool is_per_time = !std::holds_alternative<integrate::InertiaJump>(step.estimator);
+  newton.projects_velocities = plan.project_velocities || (is_per_time && !has_equal_steps()) ||
+                               std::holds_alternative<integrate::PiControl>(step.plan.controller);
   newton.avoids_singular_ends = !has_equal_steps();
   stepper_ = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
   estimator_ =
