@@ -25,14 +25,19 @@ void DampingMemory::factorise() {
   f.response.resize(system_.size());
 }
 
-double DampingMemory::squared(const Vector& x) {
+double DampingMemory::decaying_squared(const Vector& x) {
   if (!factors_) factorise();
   Factors& f = *factors_;
   if (!f.is_damped) return duration_ * duration_ * norm_.squared(x);  // a dashpot that drives: nothing is forgotten
   f.force = 2.0 * norm_.times(x);
   f.damped.solve(f.force, f.response);
-  const double decaying = norm_.squared(f.response);
-  if (!f.creeps) return decaying;
+  return norm_.squared(f.response);
+}
+
+double DampingMemory::squared(const Vector& x) {
+  const double decaying = decaying_squared(x);
+  Factors& f = *factors_;
+  if (!f.is_damped || !f.creeps) return decaying;
   f.force.noalias() = system_.damping() * x;
   f.creeping.solve(f.force, f.response);
   return std::max(decaying, norm_.squared(f.response));

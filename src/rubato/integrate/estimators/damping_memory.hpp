@@ -25,6 +25,8 @@ class DampingMemory {
 
   /// |T x|_M^2
   double squared(const Vector& x);
+  /// Of what decays alone: |2 (C + 2 D M)^-1 M x|_M^2
+  double decaying_squared(const Vector& x);
 
  private:
   struct Factors;

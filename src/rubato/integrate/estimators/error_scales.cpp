@@ -21,7 +21,7 @@ ErrorScales::ErrorScales(ErrorSpace& space, double duration, int derivative)
 void ErrorScales::start(const system::State& state) {
   y_ = rate_ = 0.0;
   steps_ = 0;
-  remembered_ = measured_ = 0.0;
+  memory_ = decay_ = {};
   expect(state);
 }
 
@@ -45,17 +45,40 @@ double ErrorScales::speed_frequency() const {
   return std::max(slowest, speed_ > 0.0 ? std::sqrt(speed_rate_ / speed_) : promised_);
 }
 
-double ErrorScales::memory() const {
-  return measured_ > 0.0 ? std::min(duration_, std::sqrt(remembered_ / measured_)) : duration_;
+double ErrorScales::Memory::most(double duration) const {
+  return measured > 0.0 ? std::min(duration, std::sqrt(remembered / measured)) : duration;
+}
+
+double ErrorScales::Memory::with_now(double duration) const {
+  if (!(remembered_now >= 0.0)) return most(duration);
+  const double now = std::sqrt(remembered_now / measured_now);
+  return std::min(duration, measured > 0.0 ? std::max(most(duration), now) : now);
+}
+
+void ErrorScales::Memory::accept(double share) {
+  if (!(remembered_now >= 0.0)) return;
+  const double weight = measured > 0.0 ? share : 1.0;
+  remembered += weight * (remembered_now - remembered);
+  measured += weight * (measured_now - measured);
+}
+
+double ErrorScales::memory() const { return memory_.most(duration_); }
+
+bool ErrorScales::is_due(double squared, double h) const {
+  return is_damped_ && (steps_ % stride == 0 || h != last_step_) && squared > 0.0;
 }
 
 double ErrorScales::memory_of(const Vector& shape, double shape_squared, double h) {
-  const bool is_due = is_damped_ && (steps_ % stride == 0 || h != last_step_) && shape_squared > 0.0;
-  remembered_now_ = is_due ? space_.remembered_squared(shape) : -1.0;
-  measured_now_ = shape_squared;
-  if (!is_due) return memory();
-  const double now = std::sqrt(remembered_now_ / measured_now_);
-  return std::min(duration_, measured_ > 0.0 ? std::max(memory(), now) : now);
+  memory_.remembered_now = is_due(shape_squared, h) ? space_.remembered_squared(shape) : -1.0;
+  memory_.measured_now = shape_squared;
+  decay_.remembered_now = -1.0;
+  return memory_.with_now(duration_);
+}
+
+double ErrorScales::decay_of(const Vector& w, double squared, double h) {
+  decay_.remembered_now = is_due(squared, h) ? space_.decaying_squared(w) : -1.0;
+  decay_.measured_now = squared;
+  return decay_.with_now(duration_);
 }
 
 double ErrorScales::relative(double dq_squared, double dv_squared, const system::State& to, bool is_contact) const {
@@ -78,11 +101,9 @@ void ErrorScales::accept(double y, double rate, const system::State& to, double 
     y_ += share * (y - y_);
     rate_ += share * (rate - rate_);
   }
-  if (remembered_now_ >= 0.0) {
-    const double weight = measured_ > 0.0 ? -std::expm1(-static_cast<double>(stride) * frequency() * h) : 1.0;
-    remembered_ += weight * (remembered_now_ - remembered_);
-    measured_ += weight * (measured_now_ - measured_);
-  }
+  const double weight = -std::expm1(-static_cast<double>(stride) * frequency() * h);
+  memory_.accept(weight);
+  decay_.accept(weight);
   last_step_ = h;
   if (steps_++ % stride != 0) return;
   size_ = std::max(size_, space_.displacement(to));

@@ -35,6 +35,10 @@ class ErrorScales {
   /// @param shape  whose errors are remembered [n], |shape|_M^2 beside it
   double memory_of(const Vector& shape, double shape_squared, double h);
 
+  /// The same time of errors of velocity that count as the displacements that they become, from a motion w [n] (the
+  /// second derivative of q, |w|_M^2 beside it); to be asked for after memory_of().
+  double decay_of(const Vector& w, double squared, double h);
+
   /// Takes in an accepted step, which memory_of() was asked for.
   /// @param y     |y|_M^2
   /// @param rate  |y'|_M^2, negative where unknown
@@ -49,6 +53,16 @@ class ErrorScales {
   double third_derivative() const { return third_at_start_; }
 
  private:
+  /// A time T, T^2 = <|T y|^2>/<|y|^2>, from the looks at it.
+  struct Memory {
+    double remembered = 0.0, measured = 0.0;           // averages; 0: unknown
+    double remembered_now = -1.0, measured_now = 0.0;  // of the last try; negative: not due
+    double most(double duration) const;
+    double with_now(double duration) const;
+    void accept(double weight);
+  };
+
+  bool is_due(double squared, double h) const;
   void expect(const system::State& state);
 
   ErrorSpace& space_;
@@ -57,9 +71,8 @@ class ErrorScales {
   bool is_damped_;
   bool has_stops_;
   double size_ = 0.0, third_at_start_ = 0.0;
-  double y_ = 0.0, rate_ = 0.0;                        // averages of |y|^2 and |y'|^2
-  double remembered_ = 0.0, measured_ = 0.0;           // averages of |T y|^2 and |y|^2; 0: unknown
-  double remembered_now_ = -1.0, measured_now_ = 0.0;  // of the last try; negative: not due
+  double y_ = 0.0, rate_ = 0.0;  // averages of |y|^2 and |y'|^2
+  Memory memory_, decay_;
   double last_step_ = 0.0;
   double speed_ = 0.0, speed_rate_ = 0.0;  // integrals of |v|^2 and (d|v|/dt)^2 over time
   double promised_ = 0.0;                  // Omega before anything has moved

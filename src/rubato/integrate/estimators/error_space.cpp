@@ -36,6 +36,7 @@ class StructureSpace final : public ErrorSpace {
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
   double remembered_squared(const Vector& x) override { return memory_.squared(x); }
+  double decaying_squared(const Vector& x) override { return memory_.decaying_squared(x); }
 
  private:
   double promised() {

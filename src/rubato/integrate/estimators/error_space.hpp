@@ -32,6 +32,8 @@ class ErrorSpace {
   virtual bool is_damped() const = 0;
   /// |T x|_M^2 with the times T over which errors of a motion x are remembered (DampingMemory).
   virtual double remembered_squared(const Vector& x) = 0;
+  /// The same without what creeps: of errors of velocity as the displacements that they become.
+  virtual double decaying_squared(const Vector& x) = 0;
 
   double squared(const Vector& x) { return x.dot(times_mass(x)); }
   double norm(const Vector& x) { return std::sqrt(squared(x)); }

@@ -72,6 +72,9 @@ struct InertiaJump {
 /// however long it lasts. So methods of second order count the part x of q''' that is slower than omega_c (SlowPart),
 /// and the whole of q''' for the step alone (1 for T/h), which sees an event before it has lasted.
 ///
+/// Methods of first order count all of q''', and not less than what their errors of velocity (gamma - 1/2 + d) h^2 q'''
+/// leave of the displacement in a free motion, without a frequency: from q'' less its mean.
+///
 /// TOL is the global error relative to s, on linear problems within a factor of ten.
 struct LocalError {
   double tolerance = 1e-3;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace rubato::integrate {
 namespace {
@@ -21,12 +22,16 @@ class LocalErrorEstimator final : public Estimator {
         scales_(*space_, duration, 3),
         duration_(duration),
         slow_(space_->size()),
+        swing_(Vector::Zero(space_->size())),
+        swing_now_(swing_),
         now_(space_->size()),
         last_(space_->size()) {}
 
   void start(const system::State& state) override {
     scales_.start(state);
     slow_.forget();
+    swing_.setZero();
+    elapsed_ = 0.0;
     forget();
   }
 
@@ -40,7 +45,7 @@ class LocalErrorEstimator final : public Estimator {
     if (c_.order == 1) {
       now_.third = now_.squared / (h * h);
       const double often = scales_.memory_of(now_.jump, now_.squared, h) / h;
-      return std::fmax(of_the_step(to, h), of_speed(to, h)) * often;
+      return std::fmax(std::fmax(of_the_step(to, h), of_speed(to, h)) * often, of_swing(to, h));
     }
     slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
     now_.third = space_->squared(slow_.value());
@@ -54,6 +59,8 @@ class LocalErrorEstimator final : public Estimator {
   void accept(const system::State& to) override {
     if (c_.order == 1) {
       scales_.accept(now_.third, now_.fourth, to, now_.step);
+      swing_.swap(swing_now_);
+      elapsed_ += now_.step;
     } else {
       scales_.accept(now_.third, now_.fourth, to, now_.step);
       slow_.accept();
@@ -136,6 +143,17 @@ class LocalErrorEstimator final : public Estimator {
     return scales_.relative(behind * behind, 0.0, to, false) / tolerance_;
   }
 
+  /// Of a method of first order, without a frequency: the velocities velocity h^2 q''' that a march loses leave what
+  /// the accelerations velocity h w less would, w = q'' less its mean since the start. A free motion w exp(-t/T) whose
+  /// errors are forgotten over T errs by T/(2 e) times them at most (docs/theory/automatic-steps.md).
+  double of_swing(const system::State& to, double h) {
+    constexpr double share = 0.5 / std::numbers::e;
+    swing_now_ = (elapsed_ / (elapsed_ + h)) * (swing_ + now_.jump);
+    const double squared = space_->squared(swing_now_), time = scales_.decay_of(swing_now_, squared, h);
+    const double most = share * c_.velocity * h * time;
+    return scales_.relative(most * most * squared, 0.0, to, false) / tolerance_;
+  }
+
   struct Difference {
     explicit Difference(Index n) : jump(n), product(n) {}
     Vector jump, product;  // J and M J
@@ -152,6 +170,8 @@ class LocalErrorEstimator final : public Estimator {
   ErrorScales scales_;
   double duration_;
   SlowPart slow_;
+  Vector swing_, swing_now_;  // q'' less its mean, of the last accepted step and of the try
+  double elapsed_ = 0.0;      // since the start
   Difference now_, last_;
   int known_ = 0;  // accepted steps since the start or the last kink, up to two
 };

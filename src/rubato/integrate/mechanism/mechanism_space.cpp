@@ -51,6 +51,7 @@ class MechanismSpace final : public ErrorSpace {
   // Dampers of joints change with the configuration: errors are not taken to be forgotten.
   bool is_damped() const override { return false; }
   double remembered_squared(const Vector&) override { return 0.0; }
+  double decaying_squared(const Vector&) override { return 0.0; }
 
  private:
   /// sqrt(x^T K x / x^T M x), K x from the forces at both ends of a small motion along x.
