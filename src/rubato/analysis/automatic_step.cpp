@@ -140,7 +140,7 @@ AutomaticStep plan_automatic_step(const std::string& analysis, const model::Step
   step.estimator = estimator_of(description, method, step.tolerance, reference, system);
   try {
     const auto stepper = integrate::make_stepper(method, system);
-    const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration);
+    const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration, plan.bounds);
     estimator->start(integrate::consistent_start(system, start));
     const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
     step.expected_steps = is_fixed ? std::ceil(duration / plan.first) : swings.least_steps(plan);

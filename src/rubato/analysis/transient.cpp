@@ -182,8 +182,8 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   } else {
     observer.start(state);
     if (plan.automatic) {
-      const auto estimator =
-          integrate::make_estimator(plan.automatic->estimator, plan.method, system, *stepper, plan.duration);
+      const auto estimator = integrate::make_estimator(plan.automatic->estimator, plan.method, system, *stepper,
+                                                       plan.duration, plan.automatic->plan.bounds);
       StepRecorder tries(name, *plan.automatic, context.sink);
       const integrate::AdaptiveReport adaptive =
           integrate::march(*stepper, *estimator, plan.automatic->plan, system, state, plan.duration, &observer, &tries);

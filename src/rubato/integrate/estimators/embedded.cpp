@@ -19,9 +19,10 @@ class EmbeddedEstimator : public Estimator {
  public:
   /// @param decay  of a peak of the error over the phase omega t: an error that follows one derivative of the motion
   ///               alone passes through zero, and a step that grows there is rejected soon after; infinity: no peaks
-  EmbeddedEstimator(double tolerance, double decay, const system::LocallyNonlinear& system, double duration)
+  EmbeddedEstimator(double tolerance, double decay, const system::LocallyNonlinear& system, double duration,
+                    const std::vector<numerics::StepBound>& bounds)
       : tolerance_(tolerance),
-        space_(make_error_space(system, duration)),
+        space_(make_error_space(system, duration, bounds)),
         scales_(*space_, duration, 1),
         decay_(decay),
         dq_(system.size()),
@@ -99,8 +100,8 @@ std::vector<double> stability_polynomial(const numerics::ButcherTableau& t, cons
 class PairEstimator final : public EmbeddedEstimator {
  public:
   PairEstimator(double tolerance, const numerics::ButcherTableau& pair, const system::LocallyNonlinear& system,
-                const Stepper& stepper, double duration)
-      : EmbeddedEstimator(tolerance, std::numeric_limits<double>::infinity(), system, duration),
+                const Stepper& stepper, double duration, const std::vector<numerics::StepBound>& bounds)
+      : EmbeddedEstimator(tolerance, std::numeric_limits<double>::infinity(), system, duration, bounds),
         order_(pair.embedded_order + 1),
         stepper_(stepper) {
     const auto better = stability_polynomial(pair, pair.b), other = stability_polynomial(pair, pair.embedded);
@@ -134,8 +135,9 @@ class PairEstimator final : public EmbeddedEstimator {
 /// differs by theta (theta - 1)/4 h^3 q''''.
 class WilsonEstimator final : public EmbeddedEstimator {
  public:
-  WilsonEstimator(double tolerance, double theta, const system::LocallyNonlinear& system, double duration)
-      : EmbeddedEstimator(tolerance, 0.5, system, duration),
+  WilsonEstimator(double tolerance, double theta, const system::LocallyNonlinear& system, double duration,
+                  const std::vector<numerics::StepBound>& bounds)
+      : EmbeddedEstimator(tolerance, 0.5, system, duration, bounds),
         linear_(make_alpha_stepper(GeneralizedAlpha{0.0, 0.0, 1.0 / 6.0, 0.5}, system)),
         other_(system.start()),
         carried_(error_constants(WilsonTheta{theta}).velocity_next),
@@ -175,16 +177,17 @@ bool can_embed(const Method& method) {
 }
 
 std::unique_ptr<Estimator> make_embedded(const Embedded& kind, const Method& method,
-                                         const system::LocallyNonlinear& system, Stepper& stepper, double duration) {
+                                         const system::LocallyNonlinear& system, Stepper& stepper, double duration,
+                                         const std::vector<numerics::StepBound>& bounds) {
   if (const auto* wilson = std::get_if<WilsonTheta>(&method.formula))
-    return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration);
+    return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration, bounds);
   if (!can_embed(method))
     throw InvalidInput(
         fmt::format("the estimator embedded compares two solutions of a step, and {} has one; take {}", method.name,
                     std::holds_alternative<RungeKutta>(method.formula) ? "the method bogacki_shampine or dormand_prince"
                                                                        : "the estimator local_error"));
   const auto& pair = std::get<RungeKutta>(method.formula).tableau;
-  return std::make_unique<PairEstimator>(kind.tolerance, pair, system, stepper, duration);
+  return std::make_unique<PairEstimator>(kind.tolerance, pair, system, stepper, duration, bounds);
 }
 
 }  // namespace rubato::integrate

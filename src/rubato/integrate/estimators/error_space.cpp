@@ -8,8 +8,9 @@ namespace {
 
 class StructureSpace final : public ErrorSpace {
  public:
-  StructureSpace(const system::LocallyNonlinear& system, double duration)
-      : system_(system), norm_(system), duration_(duration), memory_(system, duration) {}
+  StructureSpace(const system::LocallyNonlinear& system, double duration,
+                 const std::vector<numerics::StepBound>& bounds)
+      : system_(system), norm_(system), duration_(duration), bounds_(bounds), memory_(system, duration) {}
 
   Index size() const override { return system_.size(); }
   const Vector& times_mass(const Vector& x) override { return norm_.times(x); }
@@ -40,21 +41,23 @@ class StructureSpace final : public ErrorSpace {
 
  private:
   double promised() {
-    if (promised_ < 0.0) promised_ = size_under_loads(system_, duration_);
+    if (promised_ < 0.0) promised_ = size_under_loads(system_, duration_, bounds_);
     return promised_;
   }
 
   const system::LocallyNonlinear& system_;
   MassNorm norm_;
   double duration_, promised_ = -1.0;
+  std::vector<numerics::StepBound> bounds_;
   bool has_started_ = false;  // later the displacement itself tells how far velocities lead
   DampingMemory memory_;
 };
 
 }  // namespace
 
-std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration) {
-  return std::make_unique<StructureSpace>(system, duration);
+std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration,
+                                             const std::vector<numerics::StepBound>& bounds) {
+  return std::make_unique<StructureSpace>(system, duration, bounds);
 }
 
 }  // namespace rubato::integrate

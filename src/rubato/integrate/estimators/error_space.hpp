@@ -1,10 +1,12 @@
 #pragma once
 
 #include <rubato/integrate/estimators/response_scales.hpp>
+#include <rubato/numerics/formula_swings.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <cmath>
 #include <memory>
+#include <vector>
 
 namespace rubato::integrate {
 
@@ -41,6 +43,8 @@ class ErrorSpace {
 
 /// That of a structure; the system must outlive it.
 /// @param duration  of the march, whose loads promise a size [s]
-std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration);
+/// @param bounds    how they swing
+std::unique_ptr<ErrorSpace> make_error_space(const system::LocallyNonlinear& system, double duration,
+                                             const std::vector<numerics::StepBound>& bounds);
 
 }  // namespace rubato::integrate

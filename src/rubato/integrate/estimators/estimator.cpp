@@ -22,12 +22,13 @@ void require_tolerance(double tolerance, bool is_relative) {
 }  // namespace
 
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Method& method,
-                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration) {
+                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration,
+                                          const std::vector<numerics::StepBound>& bounds) {
   const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
   const auto* wilson = std::get_if<WilsonTheta>(&method.formula);
   if (const auto* embedded = std::get_if<Embedded>(&kind)) {
     require_tolerance(embedded->tolerance, true);
-    return make_embedded(*embedded, method, system, stepper, duration);
+    return make_embedded(*embedded, method, system, stepper, duration, bounds);
   }
   if (!alpha && !wilson)
     throw InvalidInput(
@@ -38,9 +39,10 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Metho
   const GeneralizedAlpha linear{0.0, 0.0, 1.0 / 6.0, 0.5};  // acceleration
   const auto* local = std::get_if<LocalError>(&kind);
   if (alpha || !local)
-    return make_estimator(kind, alpha ? *alpha : linear, make_error_space(system, duration), system.start(), duration);
+    return make_estimator(kind, alpha ? *alpha : linear, make_error_space(system, duration, bounds), system.start(),
+                          duration);
   require_tolerance(local->tolerance, true);
-  return make_local_error(*local, error_constants(*wilson), make_error_space(system, duration), duration);
+  return make_local_error(*local, error_constants(*wilson), make_error_space(system, duration, bounds), duration);
 }
 
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const GeneralizedAlpha& method,

@@ -2,11 +2,13 @@
 
 #include <rubato/integrate/method.hpp>
 #include <rubato/integrate/stepper.hpp>
+#include <rubato/numerics/formula_swings.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 // An estimator measures the error of a try and divides it by the tolerance. It decides nothing.
 namespace rubato::integrate {
@@ -91,10 +93,12 @@ using EstimatorKind = std::variant<InertiaJump, LocalError, Embedded>;
 
 /// Binds an estimator to a method on a system; both and the stepper must outlive it.
 /// @param duration  of the march [s]: errors per unit of time are shares of it
+/// @param bounds    how the loads swing (StepPlan), for the size of what is to come
 /// Throws InvalidInput, saying which would do, where the method lacks what the estimator reads, for a tolerance out of
 /// its range, and for a reference value that is not positive.
 std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Method& method,
-                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration);
+                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration,
+                                          const std::vector<numerics::StepBound>& bounds = {});
 
 /// The same of other equations, for methods of the alpha family: the estimator keeps the space.
 /// @param start  where the march starts: what `reference` = 0 measures by

@@ -15,16 +15,39 @@ struct Sample {
   double t, value;
 };
 
-/// A law at distances that no period meets (the multiples of the golden ratio within equal parts), and at its kinks, on
-/// both sides of a jump.
-std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts) {
-  std::vector<double> times;
-  times.push_back(0.0);
+/// Within equal parts at the multiples of the golden ratio: distances that no period meets.
+void add_times(double from, double to, int parts, std::vector<double>& times) {
   for (int i = 0; i < parts; ++i) {
     const double place = std::fmod((i + 1) * std::numbers::phi, 1.0);
-    times.push_back(duration * (i + place) / parts);
+    times.push_back(from + (to - from) * (i + place) / parts);
   }
+}
+
+/// Where loads swing faster than samples of the whole march see: four times in each step that they allow, but no more
+/// than `most` in all, the fastest swings first.
+void add_swings(const std::vector<numerics::StepBound>& bounds, double distance, double most,
+                std::vector<double>& times) {
+  constexpr double a_step = 4.0;
+  std::vector<numerics::StepBound> fast;
+  for (const auto& bound : bounds)
+    if (bound.step < a_step * distance) fast.push_back(bound);
+  std::sort(fast.begin(), fast.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+  for (const auto& bound : fast) {
+    const double parts = std::ceil(a_step * (bound.to - bound.from) / bound.step);
+    if (parts > most) return;
+    most -= parts;
+    add_times(bound.from, bound.to, static_cast<int>(parts), times);
+  }
+}
+
+/// A law at times within the march, where it swings, and at its kinks, on both sides of a jump.
+std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts,
+                               const std::vector<numerics::StepBound>& bounds) {
+  std::vector<double> times;
+  times.push_back(0.0);
+  add_times(0.0, duration, parts, times);
   times.push_back(duration);
+  if (!std::holds_alternative<model::TableLaw>(law)) add_swings(bounds, duration / parts, 4.0 * parts, times);
   const model::Kinks kinks = model::kinks(law, 0.0, duration);
   times.insert(times.end(), kinks.rows.begin(), kinks.rows.end());
   times.insert(times.end(), kinks.switches.begin(), kinks.switches.end());
@@ -63,7 +86,8 @@ double largest_response(const std::vector<Sample>& p, double omega) {
 
 }  // namespace
 
-double size_under_loads(const system::LocallyNonlinear& system, double duration) {
+double size_under_loads(const system::LocallyNonlinear& system, double duration,
+                        const std::vector<numerics::StepBound>& bounds) {
   const system::Loads loads = system.loads();  // a copy: formulas are workspaces
   if (loads.terms().empty()) return 0.0;
   numerics::OrderedFactor factor;
@@ -79,7 +103,7 @@ double size_under_loads(const system::LocallyNonlinear& system, double duration)
   for (const auto& term : loads.terms()) {
     const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law);
     std::vector<Sample> samples;
-    if (!harmonic) samples = samples_of(term.law, duration, parts);
+    if (!harmonic) samples = samples_of(term.law, duration, parts, bounds);
     const double largest = harmonic ? std::abs(harmonic->amplitude) : largest_of(samples);
     if (!(largest > 0.0)) continue;
     force.setZero();

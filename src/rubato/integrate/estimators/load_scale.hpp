@@ -1,6 +1,9 @@
 #pragma once
 
+#include <rubato/numerics/formula_swings.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
+
+#include <vector>
 
 namespace rubato::integrate {
 
@@ -14,6 +17,8 @@ namespace rubato::integrate {
 /// harmonic law, else the largest response from rest of an oscillator of that frequency, where it is below the static
 /// one.
 /// @param duration  of the march from t = 0 [s]
-double size_under_loads(const system::LocallyNonlinear& system, double duration);
+/// @param bounds    how loads swing (StepPlan): where samples of the whole march would pass over it
+double size_under_loads(const system::LocallyNonlinear& system, double duration,
+                        const std::vector<numerics::StepBound>& bounds = {});
 
 }  // namespace rubato::integrate
