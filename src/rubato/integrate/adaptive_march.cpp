@@ -92,15 +92,16 @@ class Marcher {
   }
 
   /// Equal parts of the way to a breakpoint. Near to it the parts stay what they are, or are divided or joined: rows at
-  /// equal distances are then passed with few different lengths, whose matrices the stepper has.
+  /// equal distances are then passed with few different lengths, whose matrices the stepper has. A part that was
+  /// rejected is divided, however little is wanted of it.
   double part_of(double rest, double wanted) const {
     constexpr double near = 32.0, worth_keeping = 0.8;
     const double parts = part_ > 0.0 ? rest / part_ : HUGE_VAL;
     if (!(parts < near && std::abs(parts - std::round(parts)) < same_step * parts))
       return rest / std::ceil(rest / wanted - same_step);
     // After a rejection the part is what was rejected, and the same again would be rejected for ever.
-    if (wanted < (history_.was_rejected ? 1.0 : worth_keeping) * part_)
-      return part_ / std::ceil(part_ / wanted - same_step);
+    const double least = history_.was_rejected ? 1.0 - same_step : worth_keeping;
+    if (wanted < least * part_) return part_ / std::ceil(part_ / wanted - same_step);
     const long all = std::lround(parts);
     for (long joined = std::lround(std::floor(wanted / part_)); joined > 1; --joined)
       if (all % joined == 0) return static_cast<double>(joined) * part_;
