@@ -1,6 +1,6 @@
 """Runs the matrix: each combination of method, controller, estimator, model and output is refused with a message or right.
 
-Usage: run.py RUBATO [--sample N] [--only TEXT] [--keep DIR] [--table FILE]
+Usage: run.py RUBATO [--sample N] [--only TEXT] [--jobs N] [--keep DIR] [--table FILE]
 
 Right means:
 - equal steps on a smooth motion: the ratio of the errors at h and h/2 lies within 0.7 and 1.4 times 2^order, or the error
@@ -17,6 +17,7 @@ a model is another route: the exact flow, or a march at a tolerance far below.
 """
 import argparse
 import collections
+import concurrent.futures
 import csv
 import math
 import os
@@ -207,6 +208,7 @@ def main():
     parser.add_argument("rubato")
     parser.add_argument("--sample", type=int, help="only so many, drawn with a fixed seed, and those of failed.txt")
     parser.add_argument("--only", default="", help="only combinations whose name contains this")
+    parser.add_argument("--jobs", type=int, default=1, help="so many models at a time")
     parser.add_argument("--keep", help="folder of the studies and results (default: a temporary one)")
     parser.add_argument("--table", help="write a line for each combination")
     options = parser.parse_args()
@@ -220,11 +222,14 @@ def main():
         groups = collections.defaultdict(list)
         for combination in chosen:
             groups[combination.model.name].append(combination)
-        for combinations in groups.values():
+
+        def run(combinations):
             matrix.run_model(combinations[0].model, combinations)
             print(f"{combinations[0].model.name}: {len(combinations)} combinations; so far {len(matrix.right)} right, "
                   f"{len(matrix.refused)} refused, {len(matrix.ended)} ended with a message, {len(matrix.wrong)} wrong",
                   flush=True)
+        with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+            list(pool.map(run, groups.values()))
     for combination, line in matrix.wrong:
         print(f"WRONG {combination.name}: {line}")
     if options.table:
