@@ -130,6 +130,8 @@ struct DynamicStiffness::Workspace {
   // Real free motions that span the directions given (in units of the diagonal), each judged by itself.
   Matrix real_motions(const ComplexMatrix& directions, const Vector& units) const {
     Matrix motions(directions.rows(), 0);
+    const Vector errors = shape_error * units.cwiseInverse();
+    const double of_errors = errors.dot(terms * errors);
     for (Index c = 0; c < 2 * directions.cols(); ++c) {
       Vector motion = c % 2 == 0 ? Vector(directions.col(c / 2).real()) : Vector(directions.col(c / 2).imag());
       for (int pass = 0; pass < 2; ++pass) motion -= motions * (motions.transpose() * motion);
@@ -137,7 +139,7 @@ struct DynamicStiffness::Workspace {
       motion.normalize();
       const ComplexVector x = motion.cwiseQuotient(units).cast<Complex>();
       const double sum = std::abs(x.dot(matrix * x).real()), sizes = x.cwiseAbs().dot(terms * x.cwiseAbs());
-      if (!(sum <= round_off_of_terms * sizes) || is_damped(x)) continue;
+      if (!(sum <= round_off_of_terms * sizes + of_errors) || is_damped(x)) continue;
       motions.conservativeResize(Eigen::NoChange, motions.cols() + 1);
       motions.col(motions.cols() - 1) = motion;
     }

@@ -24,6 +24,8 @@ struct StiffnessSolution {
 inline constexpr double undetermined = 1e-3;
 /// Part of the terms of a sum below which the sum is round-off of them.
 inline constexpr double round_off_of_terms = 1e3 * std::numeric_limits<double>::epsilon();
+/// To so much of its largest entries a free motion is known: what stands still in it seems to move that far.
+inline constexpr double shape_error = 1e-10;
 
 /// S(omega) = K - omega^2 M + i omega C of a structure with some sliders stuck, and its solutions. Dense for small and
 /// full matrices; else sparse L D L^T whose pattern is analysed once, with iterative refinement, and sparse LU with

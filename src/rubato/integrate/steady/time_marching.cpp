@@ -23,13 +23,14 @@ constexpr int most_retries = 2;  // with twice the steps, of a march that does n
 // Steps are chosen for this part of the tolerance, so that the next point seldom needs a second round.
 constexpr double aim = 0.7;
 
-// A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite.
+// A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite. One
+// that drifts may have been led to a speed beside which what a period adds is nothing.
 void find_unbounded(const system::LocallyNonlinear& system, std::span<const Excitation> excitations,
                     const SteadyRequest& request, std::span<SteadyResponse> responses) {
   if (system.stop_count() > 0) return;  // stops may bound the motion
   std::optional<UndampedResonance> resonance;
   for (std::size_t l = 0; l < responses.size(); ++l) {
-    if (is_repeating(responses[l].status)) continue;
+    if (is_repeating(responses[l].status) && responses[l].status != SteadyStatus::drifting) continue;
     if (!resonance) resonance.emplace(system);
     if (resonance->is_driven_beyond_friction(excitations[l]))
       make_unbounded(request, system.slider_count(), responses[l]);

@@ -20,12 +20,17 @@ double friction_along(const system::LocallyNonlinear& system, const Vector& limi
   return taken;
 }
 
-// Those of the motions that no damper resists: a constant load drives the others at a bounded speed.
-Matrix undamped(const SparseMatrix& damping, const Matrix& motions) {
+// Those of the motions that no damper resists: a constant load drives the others at a bounded speed. A motion is known
+// to `shape_error` of its mass norm: a mass that stands still in it seems to move so much, and its damper to resist.
+Matrix undamped(const SparseMatrix& damping, const SparseMatrix& mass, const Matrix& motions) {
   const Matrix resistance = motions.transpose() * (damping * motions);
-  const double terms = (motions.cwiseAbs().transpose() * (damping.cwiseAbs() * motions.cwiseAbs())).trace();
+  const Matrix moduli = motions.cwiseAbs();
+  const double terms = (moduli.transpose() * (damping.cwiseAbs() * moduli)).trace();
+  const double norm = std::sqrt((motions.transpose() * (mass * motions)).trace());
+  const Vector errors = shape_error * norm * Vector(mass.diagonal()).cwiseSqrt().cwiseInverse();
+  const double of_errors = errors.dot(damping.cwiseAbs() * errors);
   const Eigen::SelfAdjointEigenSolver<Matrix> parts(resistance);
-  const Index count = (parts.eigenvalues().array().abs() <= round_off_of_terms * terms).count();
+  const Index count = (parts.eigenvalues().array().abs() <= round_off_of_terms * terms + of_errors).count();
   return motions * parts.eigenvectors().leftCols(count);
 }
 
@@ -39,7 +44,7 @@ Matrix UndampedResonance::motions_at(double w) {
   stiffness_.factorise(w);
   Matrix motions = stiffness_.free_motions();
   if (w > 0.0) return motions;
-  if (motions.cols() > 0) motions = undamped(system_.damping(), motions);
+  if (motions.cols() > 0) motions = undamped(system_.damping(), system_.mass(), motions);
   at_rest_ = motions;
   return motions;
 }
