@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rubato::app {
 namespace {
@@ -22,13 +23,14 @@ std::string line_of(const TableComparison& table, const ColumnDifference& column
   std::string line =
       fmt::format("{} {:<{}}  {:>9.2e}  {:>9.2e}", mark, column.column, width, column.relative, column.largest);
   if (column.largest > 0.0)
-    line += table.is_interpolated ? fmt::format("  t = {:.6g} s", column.at) : fmt::format("  row {:.0f}", column.at);
+    line += table.is_history ? fmt::format("  t = {:.6g} s", column.at) : fmt::format("  row {:.0f}", column.at);
   if (column.interpolation > 0.0) line += fmt::format("  (interpolation: about {:.0e})", column.interpolation);
   return line;
 }
 
-/// Returns whether it is within the tolerance.
+/// Returns whether it is within the tolerance, or does not count.
 bool print_table(const TableComparison& table, const CompareOptions& options) {
+  const double tolerance = table.counts ? options.tolerance : std::numeric_limits<double>::infinity();
   auto columns = table.columns;
   std::stable_sort(columns.begin(), columns.end(),
                    [](const auto& a, const auto& b) { return a.relative > b.relative; });
@@ -37,16 +39,16 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
     fmt::print("{}: equal\n", table.table);
     return true;
   }
-  fmt::print("{}\n", table.table);
-  for (const std::string& gap : table.gaps) fmt::print("* {}\n", gap);
+  fmt::print("{}{}\n", table.table, table.counts ? "" : " (how the runs chose their steps; it does not count)");
+  for (const std::string& gap : table.gaps) fmt::print("{} {}\n", table.counts ? "*" : " ", gap);
   for (const std::string& note : table.notes) fmt::print("  {}\n", note);
-  if (columns.empty()) return table.gaps.empty();
+  if (columns.empty()) return table.gaps.empty() || !table.counts;
   std::size_t width = 6, told = 0;
   for (const ColumnDifference& column : columns) width = std::max(width, column.column.size());
   fmt::print("  {:<{}}  {:>9}  {:>9}  at\n", "column", width, "relative", "largest");
   for (const ColumnDifference& column : columns) {
     if (!options.all && (column.relative == 0.0 || told == most_columns)) break;
-    fmt::print("{}\n", line_of(table, column, width, options.tolerance));
+    fmt::print("{}\n", line_of(table, column, width, tolerance));
     ++told;
   }
   if (told < columns.size()) {
@@ -54,7 +56,7 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
     fmt::print("  {} more column{}, {}\n", columns.size() - told, columns.size() - told == 1 ? "" : "s",
                next.relative == 0.0 ? "equal" : fmt::format("at most {:.2e}; --all tells them", next.relative));
   }
-  return table.gaps.empty() && is_within(columns.front(), options.tolerance);
+  return !table.counts || (table.gaps.empty() && is_within(columns.front(), tolerance));
 }
 
 }  // namespace
@@ -62,19 +64,28 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
 int compare(const CompareOptions& options) {
   const auto tables = io::compare_results(options.first, options.second);
   std::size_t beyond = 0;
+  bool steps_differ = false;
   const TableComparison* worst_table = nullptr;
   const ColumnDifference* worst = nullptr;
   for (const TableComparison& table : tables) {
     if (!print_table(table, options)) ++beyond;
+    if (!table.counts) {
+      steps_differ = steps_differ || !table.gaps.empty() ||
+                     std::any_of(table.columns.begin(), table.columns.end(),
+                                 [](const ColumnDifference& column) { return column.relative > 0.0; });
+      continue;
+    }
     for (const ColumnDifference& column : table.columns)
       if (column.relative > (worst ? worst->relative : 0.0)) {
         worst = &column;
         worst_table = &table;
       }
   }
-  const std::string most = !worst ? "no column differs"
-                                  : fmt::format("the largest difference is {:.2e} of its column, \"{}\" of {}",
-                                                worst->relative, worst->column, worst_table->table);
+  const std::string most = !worst ? (steps_differ ? "no column that counts differs" : "no column differs")
+                           : !worst->told.empty()
+                               ? fmt::format("entries differ in \"{}\" of {}", worst->column, worst_table->table)
+                               : fmt::format("the largest difference is {:.2e}, \"{}\" of {}", worst->relative,
+                                             worst->column, worst_table->table);
   if (beyond == 0)
     fmt::print("\nwithin {:g}: {} table{}; {}\n", options.tolerance, tables.size(), tables.size() == 1 ? "" : "s",
                most);

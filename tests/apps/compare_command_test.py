@@ -175,6 +175,35 @@ class Compare(unittest.TestCase):
         self.assert_line(r"\* the first goes from 0 s to 4\.9 s, the second from -0\.495 s", result.stdout)
         self.assert_line(r"mass\.position \[m\] +1\.25e-05 .*\(interpolation: about 1e-05\)$", result.stdout)
 
+    # Two runs of other steps never agreed: their residues are errors, and have nothing in common but their size.
+    def test_a_residue_is_relative_to_the_energy(self):
+        header = "time [s],kinetic [J],residue [J]"
+        self.write("a/t.energy.csv", header, "0,0,0", "1,5,1e-6")
+        self.write("b/t.energy.csv", header, "0,0,0", "1,5,-1e-6")
+        result = self.compare("--tolerance", "1e-5")
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assert_line(r"^  residue \[J\] +4\.00e-07 +2\.00e-06  t = 1 s$", result.stdout)
+        self.assertEqual(self.compare("--tolerance", "1e-7").returncode, 1)
+
+    def test_the_choice_of_steps_is_told_and_does_not_count(self):
+        header = "time [s],step [s],error,accepted,reason"
+        for folder in "ab":
+            self.write(f"{folder}/t.csv", "time [s],x [m]", "0,1", "1,2")
+        self.write("a/t.steps.csv", header, "0,0.5,0.1,1,accepted", "0.5,0.5,0.1,1,accepted")
+        self.write("b/t.steps.csv", header, "0,1,2,0,error_too_large", "0,0.5,0.1,1,accepted", "0.5,0.5,0.1,1,accepted")
+        self.write("b/u.steps.csv", header, "0,1,0.5,1,accepted")
+        result = self.compare()
+        self.assertEqual(result.returncode, 0, result.stdout)
+        self.assert_line(r"^t\.steps\.csv \(how the runs chose their steps; it does not count\)$", result.stdout)
+        self.assert_line(r"^  reason +1 of 2 rows differ, the first: accepted and error_too_large$", result.stdout)
+        self.assert_line(r"^within 1e-06: 3 tables; no column that counts differs$", result.stdout)
+        self.assertNotIn("*", result.stdout)
+
+    def test_words_that_differ_are_no_infinite_difference(self):
+        self.write("a/frf.csv", "w,status", "1,converged")
+        self.write("b/frf.csv", "w,status", "1,unbounded")
+        self.assert_line(r'entries differ in "status" of frf\.csv$', self.compare().stdout)
+
     def test_wrong_use_has_status_2(self):
         self.write("a/t.csv", "w", "1")
         for options, complaint in (((), "b: there is no such folder of results"),

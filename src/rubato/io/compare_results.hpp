@@ -13,7 +13,7 @@ struct ColumnDifference {
   std::string column;
   double largest = 0.0;   ///< max |a - b|, in the unit of the column
   double relative = 0.0;  ///< over the largest value of the column in either table; infinite: words differ [-]
-  double at = 0.0;        ///< the row of it, counted from 1, or its time [s] where times are interpolated
+  double at = 0.0;        ///< the row of it, counted from 1, or of histories its time [s]; of words always the row
   std::string told = {};  ///< of words, and of numbers that one of them lacks: how many, and the first
   /// Of interpolated rows: about what interpolation by straight lines adds to `relative` [-].
   double interpolation = 0.0;
@@ -24,7 +24,8 @@ struct TableComparison {
   std::vector<ColumnDifference> columns;
   std::vector<std::string> gaps;   ///< what one of them lacks: the table, columns, rows
   std::vector<std::string> notes;  ///< how rows were matched, where that is not one by one
-  bool is_interpolated = false;
+  bool is_history = false;         ///< `at` is a time
+  bool counts = true;              ///< false of `ANALYSIS.steps.csv`, which tells how a run went and not what came out
 };
 
 /// Compares what both tables have.
@@ -35,7 +36,8 @@ struct TableComparison {
 /// column, or all up to `angular_frequency [rad/s]`, of modes up to `mode`, of damper curves up to the parameter.
 ///
 /// A difference is relative to the largest value of the column in either table, or to 1e-13 of the largest of its
-/// quantity in the table (`position [m]` of all), below which a column is round-off. Phases differ by less than pi.
+/// quantity in the table (`position [m]` of all), below which a column is round-off; that of the `residue [J]` of an
+/// energy ledger to the largest energy there. Phases differ by less than pi.
 TableComparison compare_tables(const std::string& name, const ResultTable& a, const ResultTable& b);
 
 /// All tables of two folders of results. Throws InvalidInput for folders without tables.
