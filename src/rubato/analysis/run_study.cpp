@@ -63,8 +63,8 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
                           (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
   result.warnings = plan.warnings;
-  result.summary = fmt::format("frequency response, {}, {} lines of {} points", route_name(plan.route.kind),
-                               plan.sweep.lines(), plan.steps.size());
+  result.summary = fmt::format("frequency response, {}, {} line{} of {} points", route_name(plan.route.kind),
+                               plan.sweep.lines(), plan.sweep.lines() == 1 ? "" : "s", plan.steps.size());
   return result;
 }
 
@@ -76,8 +76,8 @@ AnalysisOutline outline(const DamperCurvePlan& plan, const system::LocallyNonlin
   result.expected_bytes = 36.0 * 2.0 * plan.points() * columns;  // peaks and limits are about as many again
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points();
   result.warnings = plan.warnings;
-  result.summary = fmt::format("damper curve over {}, {} lines of {} values", plan.parameter, plan.sweep.lines(),
-                               plan.values.size());
+  result.summary = fmt::format("damper curve over {}, {} line{} of {} values", plan.parameter, plan.sweep.lines(),
+                               plan.sweep.lines() == 1 ? "" : "s", plan.values.size());
   return result;
 }
 

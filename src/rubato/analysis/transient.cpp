@@ -143,10 +143,10 @@ std::string reason(const integrate::MarchReport& report, const TransientPlan& pl
       remedy = plan.automatic ? advice_on_smallest(plan.automatic->plan, plan.duration) : "take a smaller step";
       break;
     case integrate::StepOutcome::crawls:
-      what = "crawled: the last 2,000 steps were shorter than 1e-8 of the run";
+      what = "the run crawled: the last 2,000 steps were shorter than 1e-8 of the run";
       remedy =
-          "look for contacts that change without end (a damper beside them, a slope in place of a jump), take a larger "
-          "tolerance, or a fixed step";
+          "look for a contact far stiffer than the rest (a smaller stiffness) and for contacts that change without end "
+          "(a damper beside them, a slope in place of a jump), take a larger tolerance, a shorter run, or a fixed step";
       break;
     case integrate::StepOutcome::no_way_on:
     case integrate::StepOutcome::accepted:
