@@ -2,6 +2,7 @@
 #include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
+#include <rubato/integrate/mechanism/mechanism_space.hpp>
 
 #include <fmt/format.h>
 
@@ -24,7 +25,10 @@ class MechanismObserver final : public integrate::Observer {
         ledger_(mechanism),
         between_(mechanism, timeline.breakpoints(plan.start.t, plan.duration)),
         equations_(mechanism),
-        drift_(mechanism.constraint_count()) {}
+        drift_(mechanism.constraint_count()),
+        mechanism_(mechanism),
+        way_(mechanism.size()),
+        momentum_(mechanism.size()) {}
 
   void start(const system::State& state) {
     ledger_.start(state);
@@ -41,12 +45,15 @@ class MechanismObserver final : public integrate::Observer {
     if (plan_.output == OutputKind::every_step || (plan_.output == OutputKind::every && steps_ % plan_.every == 0))
       record(after, after);
     note_drift(after);
+    note_way(after);
     if (steps_ % 64 == 0) context_.progress.advance(after.t);
     return !context_.stop.load(std::memory_order_relaxed);
   }
 
   /// Largest rate of the constraints at the ends of the steps [m/s], [rad/s].
   double largest_drift() const { return largest_drift_; }
+  /// The longest way from the start, in the mass norm [m sqrt(kg)].
+  double largest_way() const { return largest_way_; }
 
   void finish(const system::State& state) {
     if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
@@ -67,6 +74,12 @@ class MechanismObserver final : public integrate::Observer {
     equations_.constraints(drift_);
     equations_.constraint_rate(state.v, drift_);
     largest_drift_ = std::max(largest_drift_, drift_.cwiseAbs().maxCoeff());
+  }
+
+  void note_way(const system::State& state) {
+    mechanism_.difference(mechanism_.start().q, state.q, way_);
+    mechanism_.times_mass(way_, momentum_);
+    largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
   }
 
   double next_time() const {
@@ -97,6 +110,9 @@ class MechanismObserver final : public integrate::Observer {
   system::MechanismEquations equations_;
   Vector drift_;
   double largest_drift_ = 0.0;
+  const system::Mechanism& mechanism_;
+  Vector way_, momentum_;
+  double largest_way_ = 0.0;
   system::State state_;
   long steps_ = 0, next_ = 0;
   bool last_recorded_ = false;
@@ -107,6 +123,19 @@ std::string energy_told(const integrate::LockEvent& event) {
   if (!(event.energy_lost > 0.0)) return {};
   if (event.has_engaged) return fmt::format(", taking {:.4g} J", event.energy_lost);
   return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
+}
+
+/// What to tell of a motion so small beside the size by which its errors are measured that the tolerance does not hold
+/// for it; empty: nothing.
+std::string warning_of_small_motion(double way, const AutomaticStep& step, const system::Mechanism& mechanism) {
+  constexpr double small = 0.1;
+  const double size = integrate::make_error_space(mechanism)->least_size();
+  const bool is_by_size = !std::holds_alternative<integrate::InertiaJump>(step.estimator) && step.asks_for_tolerance;
+  if (!is_by_size || !(way > 0.0) || way >= small * size) return {};
+  return fmt::format(
+      "the motion is small beside the mechanism: it goes {:.3g} m sqrt(kg) at most, and the tolerance {} is a share of "
+      "{:.3g}, so that errors may be up to {:.2g} times the tolerance of what moves; take tolerance = {:.1g}",
+      way, step.tolerance, size, size / way, step.tolerance * way / size);
 }
 
 /// The locks on which a run starts at rest, as if they had engaged then.
@@ -182,6 +211,9 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
   run.warnings = plan.warnings;
   if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
+    run.warnings.push_back(warning);
+  if (const std::string warning = warning_of_small_motion(observer.largest_way(), *transient.automatic, mechanism);
+      !warning.empty())
     run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
     run.warnings.push_back(fmt::format(
