@@ -41,12 +41,20 @@ bool TimeMarchingSolver::release_offsets(const Engine& engine, Index lane, const
   constexpr int most_sweeps = 100;
   StuckSliders stuck(static_cast<std::size_t>(slider_stiffness_.size()), false);
   std::vector<Index> sliders;
+  std::vector<double> offsets;
   bool any_offset = false;
   for (Index i = 0; i < slider_stiffness_.size(); ++i) {
-    if (response.slip_share[i] > 0.0 || excitation.limits[i] == 0.0) continue;
+    const double limit = excitation.limits[i], stiffness = slider_stiffness_[i];
+    if (limit == 0.0) continue;
+    // What slips in a motion that repeats slips to and fro, over more than twice its limit. One that creeps away from
+    // its limit in the march is on the way to where it does not slip.
+    const auto u = engine.records[static_cast<std::size_t>(lane)].displacement.row(i);
+    const bool slips = response.slip_share[i] > 0.0;
+    if (slips && stiffness * (u.maxCoeff() - u.minCoeff()) > 2.0 * limit) continue;
     stuck[static_cast<std::size_t>(i)] = true;
     sliders.push_back(i);
-    any_offset = any_offset || std::abs(response.offset[i]) > round_off * excitation.limits[i];
+    offsets.push_back(slips ? -stiffness * states(engine.map->slip_start() + i, lane) : response.offset[i]);
+    any_offset = any_offset || std::abs(offsets.back()) > round_off * limit;
   }
   if (!any_offset) return false;
 
@@ -57,7 +65,7 @@ bool TimeMarchingSolver::release_offsets(const Engine& engine, Index lane, const
   for (Index a = 0; a < count; ++a) {
     const Index i = sliders[static_cast<std::size_t>(a)];
     const auto u = engine.records[static_cast<std::size_t>(lane)].displacement.row(i);
-    offset[a] = response.offset[i];
+    offset[a] = offsets[static_cast<std::size_t>(a)];
     lowest[a] = slider_stiffness_[i] * u.minCoeff() + offset[a];
     highest[a] = slider_stiffness_[i] * u.maxCoeff() + offset[a];
     for (Index b = 0; b < count; ++b) compliance(a, b) = system_.relative_displacement(i, ways.col(b));
