@@ -71,45 +71,6 @@ output = { every = 10 }
   }
 }
 
-// A plate that cannot move, with a dry hinge: the share of the load that the hinge carried by chance passed its limit,
-// and the run ended with a step below the smallest.
-TEST(ToldForces, OfADryHingeThatTheOtherJointsHoldAreNone) {
-  const MechanismStudy ran(R"(
-[[body]]
-name = "plate"
-position = [0.1, 0.2]
-mass = 1.0
-inertia = 0.1
-[[joint]]
-name = "hinge"
-type = "revolute"
-between = ["ground", "plate"]
-at = [0.0, 0.0]
-friction = { coefficient = 0.1, preload = 1.0, radius = 0.1 }
-[[joint]]
-type = "distance"
-between = ["ground", "plate"]
-at = [0.2, 0.1]
-to = [-0.3, 0.4]
-[[joint]]
-type = "distance"
-between = ["ground", "plate"]
-at = [0.0, -0.4]
-to = [0.3, 0.3]
-[[force]]
-on = "plate.rz"
-expression = "5*sin(4.5*t) + 0"
-[[analysis]]
-name = "held"
-type = "transient"
-duration = 1.0
-step = { tolerance = 1e-5 }
-)");
-  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
-  for (std::size_t row = 0; row < ran.table("held").rows.size(); ++row)
-    EXPECT_EQ(ran.at(row, "held", "friction_moment", "hinge"), 0.0) << row;
-}
-
 // The laws of a screw are of its angle; of its way along the axis a column told what the arms of its rows made of them.
 TEST(ToldForces, OfTheLawOfAScrewAreMomentsAlone) {
   const MechanismStudy ran(R"(

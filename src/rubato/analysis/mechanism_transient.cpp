@@ -128,10 +128,12 @@ std::string energy_told(const integrate::LockEvent& event) {
 /// What to tell of a motion so small beside the size by which its errors are measured that the tolerance does not hold
 /// for it; empty: nothing.
 std::string warning_of_small_motion(double way, const AutomaticStep& step, const system::Mechanism& mechanism) {
-  constexpr double small = 0.1;
+  constexpr double small = 0.01;
   const double size = integrate::make_error_space(mechanism)->least_size();
   const bool is_by_size = !std::holds_alternative<integrate::InertiaJump>(step.estimator) && step.asks_for_tolerance;
-  if (!is_by_size || !(way > 0.0) || way >= small * size) return {};
+  // What Newton's method leaves of a mechanism that stands is no motion.
+  constexpr double stands = 1e-9;
+  if (!is_by_size || way <= stands * size || way >= small * size) return {};
   return fmt::format(
       "the motion is small beside the mechanism: it goes {:.3g} m sqrt(kg) at most, and the tolerance {} is a share of "
       "{:.3g}, so that errors may be up to {:.2g} times the tolerance of what moves; take tolerance = {:.1g}",

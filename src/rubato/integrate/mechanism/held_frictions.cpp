@@ -101,8 +101,7 @@ std::vector<char> frictions_held_by_drives(system::MechanismEquations& equations
     stands.push_back(is_still(state.t) && is_still(state.t + ahead));
   }
   const auto standing = static_cast<std::size_t>(std::count(stands.begin(), stands.end(), 1));
-  // Without drives what does not move is held by the joints, for good: slipping would be a step of no length.
-  if (count == 0 || (standing == 0 && !stands.empty())) return is_held;
+  if (count == 0 || standing == 0) return is_held;
   const bool all_stand = standing == stands.size();
   system::State open = state;
   std::fill(open.rubbing.begin(), open.rubbing.end(), model::friction_free);
