@@ -342,41 +342,6 @@ TEST(TableLoad, ThatBeginsAndEndsWithAValueJumpsThere) {
 
 // Between rows at equal distances the steps are equal parts, of few lengths, and the matrices of a length that comes
 // again are at hand: without either almost every change would cost a factorisation.
-/// Ends a march that tries for ever.
-struct MostTries final : TryLog {
-  void tried(const StepTry&) override {
-    if (++tries > 20000) throw std::runtime_error("the march does not end");
-  }
-  long tries = 0;
-};
-
-// The steps between two rows are equal parts of the way, which are kept where four fifths of them are wanted. A
-// rejected part of which a pair of fifth order wanted nine tenths was tried again and again, without an end.
-TEST(TableLoad, NeverTriesARejectedStepAgain) {
-  const auto forced = [](double stiffness) {
-    system::LocallyNonlinear::Parts parts;
-    parts.mass = testing::sparse(Matrix::Identity(1, 1));
-    parts.stiffness = testing::sparse(Matrix::Constant(1, 1, stiffness));
-    parts.damping = SparseMatrix(1, 1);
-    model::TableLaw rows;
-    for (int i = 0; i <= 20; ++i) {
-      rows.times.push_back(i);
-      rows.values.push_back(std::sin(2.0 * i * i));
-    }
-    parts.loads = system::Loads({system::LoadTerm{{0}, {1.0}, rows}});
-    parts.coordinates = {"mass"};
-    return system::LocallyNonlinear(std::move(parts));
-  };
-  for (const char* method : {"dormand_prince", "bogacki_shampine"})
-    for (double stiffness = 1.0; stiffness < 20.0; stiffness += 1.0)
-      for (const double tolerance : {1e-3, 1e-5}) {
-        MostTries log;
-        const Method chosen = make_method(method);
-        EXPECT_NO_THROW(run(forced(stiffness), chosen, default_estimator(chosen, tolerance), {}, 20.0, nullptr, &log))
-            << method << " on " << stiffness << " N/m at " << tolerance;
-      }
-}
-
 TEST(TableLoad, OfManyRowsNeedsFewFactorisations) {
   system::LocallyNonlinear::Parts parts;
   parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
