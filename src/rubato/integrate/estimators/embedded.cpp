@@ -182,10 +182,11 @@ std::unique_ptr<Estimator> make_embedded(const Embedded& kind, const Method& met
   if (const auto* wilson = std::get_if<WilsonTheta>(&method.formula))
     return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration, bounds);
   if (!can_embed(method))
-    throw InvalidInput(
-        fmt::format("the estimator embedded compares two solutions of a step, and {} has one; take {}", method.name,
-                    std::holds_alternative<RungeKutta>(method.formula) ? "the method bogacki_shampine or dormand_prince"
-                                                                       : "the estimator local_error"));
+    throw InvalidInput(fmt::format(
+        "the estimator embedded compares two solutions of a step, and {} has one; take {}", method.name,
+        std::holds_alternative<RungeKutta>(method.formula)         ? "the method bogacki_shampine or dormand_prince"
+        : std::holds_alternative<GeneralizedAlpha>(method.formula) ? "the estimator local_error"
+                                                                   : "a fixed step, or the method generalized_alpha"));
   const auto& pair = std::get<RungeKutta>(method.formula).tableau;
   return std::make_unique<PairEstimator>(kind.tolerance, pair, system, stepper, duration, bounds);
 }
