@@ -10,8 +10,8 @@
 namespace rubato {
 namespace {
 
-/// A block of 1 kg on a guide with a spring of 100 N/m, under a force F sin(3.7 t) from rest.
-std::string block(double force, double tolerance) {
+/// A block of 1 kg on a guide with a spring of 100 N/m, under a force F sin(3.7 t) beside a steady one, from rest.
+std::string block(double force, double tolerance, const std::string& more = "", double steady = 0.0) {
   constexpr const char* text = R"toml(
 [[body]]
 name = "block"
@@ -27,15 +27,16 @@ axis = [1.0, 0.0]
 stiffness = 100.0
 [[force]]
 on = "block.x"
-expression = "{}*sin(3.7*t)"
+expression = "{} + {}*sin(3.7*t)"
 [[analysis]]
 name = "swing"
 type = "transient"
 duration = 10.0
 step = {{ tolerance = {} }}
+{}
 output = {{ interval = 0.1 }}
 )toml";
-  return fmt::format(fmt::runtime(text), force, tolerance);
+  return fmt::format(fmt::runtime(text), steady, force, tolerance, more);
 }
 
 /// The largest difference from F/(k - w^2) (sin(w t) - w/10 sin(10 t)), over the largest of that.
@@ -50,8 +51,8 @@ double error_of(const testing::MechanismStudy& ran, double force) {
   return error / largest;
 }
 
-// Errors of mechanisms are shares of their size, not of how far they move: a hundredth of a millimetre was wrong by
-// two thirds without a word. The tolerance that the warning gives holds.
+// Errors of mechanisms are shares of their size, not of how far they move: half a millimetre of a metre was wrong by
+// half without a word. The tolerance that the warning gives holds.
 TEST(SmallMotion, IsTold) {
   const testing::MechanismStudy large(block(500.0, 1e-3), 0);
   EXPECT_TRUE(large.report.warnings.empty()) << large.report.warnings.front();
@@ -64,6 +65,14 @@ TEST(SmallMotion, IsTold) {
   const double tolerance = std::stod(told.substr(told.find("take tolerance = ") + 17));
   EXPECT_LT(tolerance, 1e-5);
   EXPECT_LT(error_of(testing::MechanismStudy(block(0.05, tolerance), 0), 0.05), 1e-2);
+}
+
+// It sinks by a metre before the run, and the size of the motion is measured from where it was given.
+TEST(SmallMotion, IsToldAboutARestThatIsFarFromWhereItWasGiven) {
+  const testing::MechanismStudy ran(block(0.05, 1e-3, "initial = \"static\"", 100.0), 0);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  ASSERT_EQ(ran.report.warnings.size(), 1u);
+  EXPECT_THAT(ran.report.warnings.front(), ::testing::HasSubstr("the motion is small"));
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ class MechanismObserver final : public integrate::Observer {
 
   void start(const system::State& state) {
     ledger_.start(state);
+    from_ = state.q;
     if (plan_.output == OutputKind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
     record(state, state);
     ++next_;
@@ -52,8 +53,10 @@ class MechanismObserver final : public integrate::Observer {
 
   /// Largest rate of the constraints at the ends of the steps [m/s], [rad/s].
   double largest_drift() const { return largest_drift_; }
-  /// The longest way from the start, in the mass norm [m sqrt(kg)].
+  /// The longest way from where the run starts, in the mass norm [m sqrt(kg)].
   double largest_way() const { return largest_way_; }
+  /// The same from the configuration given, from which estimators measure the size of the motion.
+  double largest_displacement() const { return largest_displacement_; }
 
   void finish(const system::State& state) {
     if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
@@ -76,10 +79,15 @@ class MechanismObserver final : public integrate::Observer {
     largest_drift_ = std::max(largest_drift_, drift_.cwiseAbs().maxCoeff());
   }
 
-  void note_way(const system::State& state) {
-    mechanism_.difference(mechanism_.start().q, state.q, way_);
+  double way_between(const Vector& from, const Vector& to) {
+    mechanism_.difference(from, to, way_);
     mechanism_.times_mass(way_, momentum_);
-    largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
+    return std::sqrt(way_.dot(momentum_));
+  }
+
+  void note_way(const system::State& state) {
+    largest_way_ = std::max(largest_way_, way_between(from_, state.q));
+    largest_displacement_ = std::max(largest_displacement_, way_between(mechanism_.start().q, state.q));
   }
 
   double next_time() const {
@@ -111,8 +119,8 @@ class MechanismObserver final : public integrate::Observer {
   Vector drift_;
   double largest_drift_ = 0.0;
   const system::Mechanism& mechanism_;
-  Vector way_, momentum_;
-  double largest_way_ = 0.0;
+  Vector from_, way_, momentum_;
+  double largest_way_ = 0.0, largest_displacement_ = 0.0;
   system::State state_;
   long steps_ = 0, next_ = 0;
   bool last_recorded_ = false;
@@ -127,9 +135,11 @@ std::string energy_told(const integrate::LockEvent& event) {
 
 /// What to tell of a motion so small beside the size by which its errors are measured that the tolerance does not hold
 /// for it; empty: nothing.
-std::string warning_of_small_motion(double way, const AutomaticStep& step, const system::Mechanism& mechanism) {
+std::string warning_of_small_motion(const MechanismObserver& observer, const AutomaticStep& step,
+                                    const system::Mechanism& mechanism) {
   constexpr double small = 0.01;
-  const double size = integrate::make_error_space(mechanism)->least_size();
+  const double way = observer.largest_way();
+  const double size = std::max(integrate::make_error_space(mechanism)->least_size(), observer.largest_displacement());
   const bool is_by_size = !std::holds_alternative<integrate::InertiaJump>(step.estimator) && step.asks_for_tolerance;
   // What Newton's method leaves of a mechanism that stands is no motion.
   constexpr double stands = 1e-9;
@@ -214,8 +224,7 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   run.warnings = plan.warnings;
   if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
     run.warnings.push_back(warning);
-  if (const std::string warning = warning_of_small_motion(observer.largest_way(), *transient.automatic, mechanism);
-      !warning.empty())
+  if (const std::string warning = warning_of_small_motion(observer, *transient.automatic, mechanism); !warning.empty())
     run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
     run.warnings.push_back(fmt::format(
