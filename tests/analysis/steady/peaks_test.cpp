@@ -114,13 +114,27 @@ TEST(Peaks, ThatAreCloseAreSeenByTheExtremesOfACoarseCurve) {
     values.setConstant(1, exact(x) * (1.0 + 1e-3 * std::sin(3.0 * x)));
     return true;
   };
-  range.besides = find_extremes(coarse, range);
+  range.besides = find_extremes(coarse, range, 1);
   EXPECT_LT(looks, 120);
   EXPECT_EQ(range.besides.size(), 6u);  // three tops, and the dips before, between and behind
   const auto peaks = find_peaks(curves(exact), range);
   ASSERT_EQ(peaks.size(), 4u);  // with the lower end
   EXPECT_NEAR(peaks[0].at, 2.78, 5e-3);
   EXPECT_NEAR(peaks[1].at, 2.55, 5e-3);
+}
+
+// A bump of one sign is hidden where its only sample lies on its zero; the other part of a complex response is largest
+// there.
+TEST(Peaks, OfWhichOneCurveShowsNothingAreSeenByAnother) {
+  const auto bump = [](double x) { return (x - 2.75) / 0.1 * std::exp(-std::pow((x - 2.75) / 0.1, 2)); };
+  const auto beside = [](double x) { return std::exp(-std::pow((x - 2.75) / 0.1, 2)); };
+  const PeakRange range{1.0, 5.0, 9, {}};
+  const Curves both = curves([&](double x) { return 2.0 - 0.1 * x + bump(x); }, beside);
+  EXPECT_TRUE(find_extremes(curves([&](double x) { return 2.0 - 0.1 * x + bump(x); }), range, 1).empty());
+  const auto extremes = find_extremes(both, range, 1);
+  ASSERT_EQ(extremes.size(), 2u);
+  EXPECT_NEAR(extremes[0], 2.68, 0.02);  // 2.75 -+ 0.1/sqrt(2)
+  EXPECT_NEAR(extremes[1], 2.82, 0.02);
 }
 
 TEST(Peaks, AreFoundThoughSomePointsHaveNoValue) {

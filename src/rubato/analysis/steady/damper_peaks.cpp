@@ -129,15 +129,24 @@ PeakRange DamperPeaks::range() {
 }
 
 /// Besides where a coarse scan has extremes: of two close peaks the samples alone might show one. What it finds does
-/// not depend on what was solved before, and its points are not told of.
+/// not depend on what was solved before, and its points are not told of. The first harmonics tell by their phases, too,
+/// of a peak that lies between samples.
 PeakRange DamperPeaks::range_with_extremes() {
   PeakRange wanted = range();
   const Scan told = scan_;
   const double solves = solves_;
   coarse_->forget();
+  const bool has_amplitudes = plan_.objective == DamperCurvePlan::Objective::amplitude;
+  const auto sought = has_amplitudes ? static_cast<Index>(observed()) : Index{1};
   const auto extremes = find_extremes(
-      [&](double w, Vector& values) { return !stop_.load() && take_point(w) && evaluate(*coarse_, w, values); },
-      wanted);
+      [&](double w, Vector& values) {
+        if (stop_.load() || !take_point(w) || !evaluate(*coarse_, w, objective_)) return false;
+        const auto first = response_.harmonics.col(0);
+        values.resize(sought + 3 * response_.amplitude.size());
+        values << objective_, response_.amplitude, first.real(), first.imag();
+        return true;
+      },
+      wanted, sought);
   wanted.besides.insert(wanted.besides.end(), extremes.begin(), extremes.end());
   scan_ = told;
   solves_ = solves;

@@ -73,6 +73,7 @@ class DamperPeaks final : public PeakFamily {
   Vector natural_;  ///< natural frequencies of both limits [rad/s]
   integrate::Excitation excitation_;
   integrate::SteadyResponse response_;
+  Vector objective_;  ///< of the coarse scan
   Scan scan_;
   double solves_ = 0.0;
 };

@@ -142,8 +142,9 @@ Vector cubic(const std::array<const Sample*, 4>& through, double x) {
   return sum;
 }
 
-/// Marks what lies beside new samples as rough where the cubic through the four old ones around them misses them.
-void judge(std::vector<Sample>& samples) {
+/// Marks what lies beside new samples as rough where the cubic through the four old ones around them misses them. Of
+/// the first `sought` values each is measured by its own size, the others by that of the largest of them.
+void judge(std::vector<Sample>& samples, Index sought) {
   for (Sample& one : samples) one.is_rough = false;
   std::vector<std::size_t> old;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -158,6 +159,8 @@ void judge(std::vector<Sample>& samples) {
     const Vector& now = samples[i].y;
     Vector largest = now.cwiseAbs();
     for (const Sample* one : around) largest = largest.cwiseMax(one->y.cwiseAbs());
+    auto besides = largest.tail(largest.size() - sought);
+    if (besides.size() > 0) besides.setConstant(besides.maxCoeff());
     if (((cubic(around, samples[i].x) - now).array().abs() > resolved * largest.array()).any())
       samples[i - 1].is_rough = samples[i].is_rough = true;
   }
@@ -166,7 +169,7 @@ void judge(std::vector<Sample>& samples) {
 
 }  // namespace
 
-std::vector<double> find_extremes(const Curves& curves, const PeakRange& range) {
+std::vector<double> find_extremes(const Curves& curves, const PeakRange& range, Index sought) {
   std::vector<Sample> samples;
   const auto sample = [&](double x) {
     Sample now{x, {}};
@@ -184,7 +187,7 @@ std::vector<double> find_extremes(const Curves& curves, const PeakRange& range) 
       finer.back().is_new = has_grown = true;
     }
     if (!has_grown) break;
-    judge(finer);
+    judge(finer, sought);
     samples = std::move(finer);
   }
   std::vector<Sample> known;
@@ -192,7 +195,8 @@ std::vector<double> find_extremes(const Curves& curves, const PeakRange& range) 
                [](const Sample& one) { return one.y.size() > 0; });
   std::vector<double> extremes;
   for (std::size_t i = 1; i + 1 < known.size(); ++i) {
-    const Vector before = known[i].y - known[i - 1].y, after = known[i + 1].y - known[i].y;
+    const Vector before = (known[i].y - known[i - 1].y).head(sought),
+                 after = (known[i + 1].y - known[i].y).head(sought);
     if ((before.array() * after.array() < 0.0).any()) extremes.push_back(known[i].x);
   }
   return extremes;

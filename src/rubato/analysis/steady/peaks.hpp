@@ -28,10 +28,12 @@ struct PeakRange {
 };
 
 /// Where some curves have local extremes, for PeakRange::besides: with them as samples, a maximum and its neighbours
-/// stand alone in a bracket. Samples of the range are halved twice, and on wherever the cubic through four of them
-/// misses the value between by 3e-3 of the largest of the five, six times at most. For curves that cost little and
-/// resemble those in question.
-std::vector<double> find_extremes(const Curves& curves, const PeakRange& range);
+/// stand alone in a bracket. Distances of samples are halved once, and on wherever the cubic through four of them
+/// misses the value between by a hundredth of the largest of the five, five times in all at most. For curves that cost
+/// little and resemble those in question.
+/// @param sought  how many of the values, the first, are those curves. Whatever follows, of one unit, is looked at for
+///                bends only: a peak between two samples that one curve shows by chance no trace of, another does.
+std::vector<double> find_extremes(const Curves& curves, const PeakRange& range, Index sought);
 
 /// All local maxima between the samples, each where its slope vanishes: bracketed by the samples, approached by
 /// parabolas (Brent 1973), and finished by Newton's method on central differences of 3e-6 x, which place the maximum of
