@@ -3,7 +3,9 @@
 What may differ: the linear limits are solved to round-off, `periodic` to 1e-8 of the amplitudes, the two others to their tolerance
 (four times it, for it is an estimate), and rates of sliders and stops five times as much, for no tolerance is of them. The
 transient adds the error of its own steps, what has not died away (told by its last periods), and, where an extreme lies on a
-kink, what lies between two of its rows.
+kink, what lies between two of its rows. Its accelerations are `M^-1 (f - C v - K x)`: they magnify what its velocities err by in
+the fastest motion of rate s by `|s|/Omega`, which is 8,000 where damping by stiffness meets an explicit pair (seed 118: 0.25 % at a tolerance of
+1e-7, 0.0002 % at 1e-10).
 """
 
 import math
@@ -113,7 +115,9 @@ class March:
         replaced["parameters"] = {**made.tables["parameters"], "Omega": w}
         model = made.model(**replaced)
         self.omega = made.omega
-        slowest = float(numpy.min(-rates(model).real))
+        found = rates(model)
+        slowest = float(numpy.min(-found.real))
+        self.fastest = float(numpy.max(numpy.abs(found))) / w
         period = 2 * math.pi / w  # all loads are of Omega and of multiples of it
         if not slowest > 0:
             raise NoAnswer("skipped", "a motion that does not die away")
@@ -181,7 +185,8 @@ class March:
             for order, word in enumerate(WORDS[turns]):
                 if order == 2 and (self.contacts or self.way == "implicit"):
                     continue  # an acceleration is as exact as the force at that instant, which no tolerance is of
-                allowed = limit * (5 if order and marched else 1) + self.error * 10**order
+                magnified = 10**order if order < 2 or self.way == "exact" else max(100, self.fastest)
+                allowed = limit * (5 if order and marched else 1) + self.error * magnified
                 size = self._size(order, places)
                 for place in places:
                     name = self.names[place][0]
