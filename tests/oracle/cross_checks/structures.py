@@ -5,7 +5,8 @@ import math
 import numpy
 import scipy.linalg
 
-from generate import Generator, write_toml
+from generate import Generator
+from random_structure.toml import write_toml
 from structure.model import read_model
 from study import Study
 
