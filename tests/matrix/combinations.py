@@ -40,13 +40,20 @@ class Combination:
     def has_equal_steps(self):
         return self.stepping is None or self.stepping[0] == "fixed"
 
+    @property
+    def has_inertia_jump(self):
+        """The estimator whose tolerance is one of its source: what the judge says of it needs one tolerance more."""
+        return not self.has_equal_steps and (self.stepping[1] == "inertia_jump"
+                                             or self.stepping == ("cardona_cassano", None))
+
     def rungs(self):
         """What the ladder varies: steps [s] of equal steps, tolerances of automatic ones, nothing of `exact`."""
         if self.method == '"exact"' and self.stepping is None:
             return [None]
         if self.has_equal_steps:
             return [self.model.step / 2**k for k in range(RUNGS)]
-        return list(TOLERANCES[min(self.order or 2, 3)])
+        tolerances = TOLERANCES[min(self.order or 2, 3)]
+        return [*tolerances, tolerances[-1]**2 / tolerances[-2]] if self.has_inertia_jump else list(tolerances)
 
     def analysis(self, name, rung):
         model = self.model
