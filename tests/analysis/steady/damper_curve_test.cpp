@@ -129,6 +129,20 @@ TEST(DamperCurve, HasTheOptimumOfTheThesisWithItsCertificate) {
   EXPECT_THAT(curve->report.findings.at(0), HasSubstr("lowest amplitude 3.45279383 m at N0 = 34.77876"));
 }
 
+// At 20 N and above the slider sticks, and what presses it changes nothing; at 0.05 N it hardly brakes. All of these
+// are far higher than the response with a slider that slips, and the stuck ones were taken for a flat optimum.
+TEST(DamperCurve, HasItsOptimumWhereTheSliderSlipsThoughTheBestSamplesStick) {
+  const std::string frequencies = "angular_frequency = { from = 0.5, to = 2 }\n";
+  const auto fine = run(PreparedStudy(one_mass("range = { from = 0.1, to = 3, points = 30 }\n" + frequencies)));
+  for (const std::string samples :
+       {"[0.05, 20]", "[0.05, 25, 50, 75]", "[0.05, 15, 16, 17]", "[0.05, 17, 18, 19, 20]"}) {
+    const auto curve = run(PreparedStudy(one_mass("range = " + samples + "\n" + frequencies)));
+    EXPECT_EQ(curve->kind(), Optimum::Kind::smooth) << samples;
+    EXPECT_NEAR(curve->optimum("N0"), fine->optimum("N0"), 1e-6) << samples;
+    EXPECT_NEAR(curve->optimum("objective"), fine->optimum("objective"), 1e-10) << samples;
+  }
+}
+
 TEST(DamperCurve, IsAsHighForTheSameDamperOnASpinningRotor) {
   // The load of the damper is m r speed^2 and the forces are the third engine order. Where the amplitude A(w, N) has
   // both derivatives zero, so has A(w, N(w, m)): at the mass whose load at that frequency is the best constant one.

@@ -135,6 +135,26 @@ TEST(Optimum, OfACurveThatDoesNotChangeIsFlat) {
   EXPECT_NEAR(found->active.at(0).value, 2.5, 1e-12);
 }
 
+// A level from 2.9 on, and a dip before it, at 2.8. On the level round-off makes one of the samples the lowest.
+TEST(Optimum, BesideALevelIsWhereTheCurveDips) {
+  const auto height = [](double p) {
+    return p < 2.9 ? 1.9 + 10.0 * (p - 2.8) * (p - 2.8) : 2.0 + 1e-14 * (p - 11.0 / 3.0) * (p - 11.0 / 3.0);
+  };
+  const auto mirrored = [&](double p) { return height(6.0 - p); };
+  for (const int samples : {2, 4, 6, 7}) {
+    for (const bool is_mirrored : {false, true}) {
+      Bells bells({{is_mirrored ? std::function<double(double)>(mirrored) : height, [](double) { return 2.0; }}});
+      const auto found = bells.optimum(1.0, 5.0, samples);
+      ASSERT_TRUE(found);
+      EXPECT_EQ(found->kind, Optimum::Kind::smooth) << samples;
+      EXPECT_NEAR(found->parameter, is_mirrored ? 3.2 : 2.8, 1e-6) << samples;
+      EXPECT_NEAR(found->active.at(0).value, 1.9, 1e-11) << samples;
+    }
+  }
+  Bells level({{[](double p) { return p < 2.9 ? 2.0 + (2.9 - p) : 2.0; }, [](double) { return 2.0; }}});
+  EXPECT_EQ(level.optimum(1.0, 5.0, 7)->kind, Optimum::Kind::flat);
+}
+
 // One peak that falls with slope -1 and rises with slope 3: weights 3/4 and 1/4.
 TEST(Optimum, AtACornerHasTheSlopesOfBothSides) {
   Bells bells({{[](double p) { return 2.0 + (p < 2.2 ? 2.2 - p : 3.0 * (p - 2.2)); }, [](double) { return 2.0; }}});

@@ -22,6 +22,11 @@ class Refinement {
   Refinement(PeakFamily& family, double low, double high, double sign)
       : family_(family), low_(low), high_(high), sign_(sign) {}
 
+  double value(double p) {
+    const auto peak = top(p);
+    return peak ? sign_ * peak->value : HUGE_VAL;
+  }
+
   // Brent's method without derivatives in [a, b], from a best point between.
   double minimise(double a, double best, double b, double precision = close_enough) {
     constexpr double golden = 0.381966011250105;
@@ -61,6 +66,18 @@ class Refinement {
     return x;
   }
 
+  // A bracket of a point that lies below `level`, between `worse`, where F is above it, and `edge`, from where on F
+  // keeps to it: by halving the part in which it reaches the level. Nothing where F does not fall below.
+  std::optional<std::array<double, 3>> dip(double worse, double edge, double level) {
+    const double noise = equal * std::abs(level);
+    while (std::abs(edge - worse) > close_enough * step_unit(edge)) {
+      const double middle = 0.5 * (worse + edge), now = value(middle);
+      if (now < level - noise) return std::array{std::min(worse, edge), middle, std::max(worse, edge)};
+      (now > level + noise ? worse : edge) = middle;
+    }
+    return std::nullopt;
+  }
+
   // What the lowest point near p is.
   std::optional<Optimum> certify(double p) {
     const double h = step_of(p);
@@ -98,10 +115,6 @@ class Refinement {
     const auto peaks = family_.peaks(p);
     if (peaks.empty()) return std::nullopt;
     return peaks.front();
-  }
-  double value(double p) {
-    const auto peak = top(p);
-    return peak ? sign_ * peak->value : HUGE_VAL;
   }
   bool is_same(const Peak& a, const Peak& b) const {
     return a.curve == b.curve && a.kind == b.kind && std::abs(a.at - b.at) <= same_branch * std::abs(a.at);
@@ -215,9 +228,40 @@ std::optional<Optimum> find_optimum(PeakFamily& family, const std::vector<double
   if (best == samples.size()) return std::nullopt;
   const double low = samples[best == 0 ? 0 : best - 1], high = samples[std::min(best + 1, samples.size() - 1)];
   Refinement refinement(family, samples.front(), samples.back(), sign);
-  if (best == 0 || best + 1 == samples.size())
-    if (auto bound = refinement.at_bound(samples[best])) return bound;
-  return refinement.certify(refinement.minimise(low, samples[best], high));
+
+  std::size_t first = best, last = best;
+  const auto is_level = [&](std::size_t i) {
+    return std::abs(values[i] - values[best]) <= equal * std::abs(values[best]);
+  };
+  while (first > 0 && is_level(first - 1)) --first;
+  while (last + 1 < samples.size() && is_level(last + 1)) ++last;
+
+  // Where F keeps one level, as where all sliders stick, whatever presses them, the lowest value often lies beside it:
+  // a slider that begins to slip brakes. Nothing where F does not fall below its level between it and the next samples.
+  const auto beside_level = [&](double from, double to) {
+    const double level = sign * values[best];
+    std::optional<double> lowest;
+    for (const bool is_before : {true, false}) {
+      if (is_before ? first == 0 : last + 1 == samples.size()) continue;
+      const auto bracket =
+          is_before ? refinement.dip(samples[first - 1], from, level) : refinement.dip(samples[last + 1], to, level);
+      if (!bracket) continue;
+      const double at = refinement.minimise((*bracket)[0], (*bracket)[1], (*bracket)[2]);
+      if (!lowest || refinement.value(at) < refinement.value(*lowest)) lowest = at;
+    }
+    return lowest;
+  };
+  if (first < last)
+    if (const auto lowest = beside_level(samples[first], samples[last])) return refinement.certify(*lowest);
+
+  std::optional<Optimum> found;
+  if (best == 0 || best + 1 == samples.size()) found = refinement.at_bound(samples[best]);
+  if (!found) found = refinement.certify(refinement.minimise(low, samples[best], high));
+  if (found && found->kind == Optimum::Kind::flat && first == last)
+    if (const auto lowest =
+            beside_level(std::min(found->parameter, samples[best]), std::max(found->parameter, samples[best])))
+      return refinement.certify(*lowest);
+  return found;
 }
 
 std::string optimum_kind(Optimum::Kind kind) {
