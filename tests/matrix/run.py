@@ -90,35 +90,46 @@ def compared(reference, found, has_own_times, is_smooth):
     if not has_own_times:
         return {time: reference[time] for time in tenths}
     rows = {times[-1]: reference[times[-1]]}
-    if is_smooth:
+    own = sorted(found)
+    if is_smooth and own:
         for tenth in tenths[:-1]:   # not at tenths, where tables have corners, over which cubics err
             wanted = tenth + 0.4 * (tenths[1] - tenths[0])
-            time = min(found, key=lambda t: abs(t - wanted), default=times[-1])
+            time = own[min(bisect.bisect(own, wanted), len(own) - 1)]
             rows[time] = cubic(reference, times, time)
     return rows
 
 
-def largest_error(found, expected, reference, least_size=0.0):
-    """Of all units the largest error relative to the largest value of the reference; None without an expected row."""
-    sizes, errors = collections.defaultdict(lambda: least_size), collections.defaultdict(float)
-    for row in reference.values():
-        for name, value in row.items():
-            unit = POSITION.search(name).group(2)
-            sizes[unit] = max(sizes[unit], abs(value))
-    for time, row in expected.items():
-        if time not in found:
-            return None
-        for name, value in row.items():
-            error = abs(found[time][name] - value)
-            unit = POSITION.search(name).group(2)
-            errors[unit] = max(errors[unit], error if math.isfinite(error) else math.inf)
-    return max(errors[u] / (sizes[u] or 1.0) for u in errors)
+def unit_of(column):
+    return POSITION.search(column).group(2)
+
+
+def sizes_of(reference, least_size):
+    """{unit: the largest value of the reference}."""
+    sizes = collections.defaultdict(lambda: least_size)
+    for name in next(iter(reference.values())):
+        sizes[unit_of(name)] = max(sizes[unit_of(name)], *(abs(row[name]) for row in reference.values()))
+    return {unit: size or 1.0 for unit, size in sizes.items()}
+
+
+def largest_error(found, expected, sizes):
+    """Of all units the largest error relative to their size; None without an expected row."""
+    if any(time not in found for time in expected):
+        return None
+    errors = collections.defaultdict(float)
+    for name in next(iter(expected.values())):
+        differences = [abs(found[time][name] - row[name]) for time, row in expected.items()]
+        error = max(differences) if all(map(math.isfinite, differences)) else math.inf
+        errors[unit_of(name)] = max(errors[unit_of(name)], error)
+    return max(error / sizes[unit] for unit, error in errors.items())
 
 
 def steps_chosen(path, longest):
     """How many steps a tolerance chose; None where a tenth of the run is passed with the longest that there may be."""
     with open(path) as file:
-        steps = [float(row["step [s]"]) for row in csv.DictReader(file) if row["reason"] in ("accepted", "event")]
+        rows = csv.reader(file)
+        header = next(rows)
+        step, reason = header.index("step [s]"), header.index("reason")
+        steps = [float(row[step]) for row in rows if row[reason] in ("accepted", "event")]
     return len(steps) if sum(h for h in steps if h > 0.99 * longest) < 0.1 * sum(steps) else None
 
 
@@ -183,11 +194,12 @@ class Matrix:
         if told.returncode:
             raise SystemExit(f"the reference of {model.name} fails:\n{told.stderr}")
         fine = positions(folder / "results" / "reference.csv")
-        spread = largest_error(positions(folder / "results" / "coarser.csv"), fine, fine, model.least_size)
-        return fine, max(spread, 1e-10)
+        sizes = sizes_of(fine, model.least_size)
+        spread = largest_error(positions(folder / "results" / "coarser.csv"), fine, sizes)
+        return fine, sizes, max(spread, 1e-10)
 
     def run_model(self, model, combinations):
-        reference, floor = self.reference(model)
+        reference, sizes, floor = self.reference(model)
         accepted = []
         for index, combination in enumerate(combinations):
             folder = self.folder / model.name / "check"
@@ -199,9 +211,9 @@ class Matrix:
             else:
                 self.wrong.append((combination, f"check ends with {told.returncode}: {told.stderr.strip()[:200]}"))
         for start in range(0, len(accepted), BATCH):
-            self.run_batch(model, accepted[start:start + BATCH], reference, floor)
+            self.run_batch(model, accepted[start:start + BATCH], reference, sizes, floor)
 
-    def run_batch(self, model, accepted, reference, floor):
+    def run_batch(self, model, accepted, reference, sizes, floor):
         analyses = [combination.analysis(f"c{index}-{k}", rung)
                     for index, combination in accepted for k, rung in enumerate(combination.rungs())]
         folder = self.folder / model.name / f"run{accepted[0][0]}"
@@ -209,11 +221,11 @@ class Matrix:
         failures = {match.group(1): line for line in told.stderr.splitlines()
                     if (match := re.search(r'"(c\d+-\d+)"', line))}
         for index, combination in accepted:
-            self.judge(combination, index, folder / "results", failures, reference, floor)
+            self.judge(combination, index, folder / "results", failures, reference, sizes, floor)
         if not self.keep:
             shutil.rmtree(folder)
 
-    def judge(self, combination, index, results, failures, reference, floor):
+    def judge(self, combination, index, results, failures, reference, sizes, floor):
         errors, numbers = [], []
         for k in range(len(combination.rungs())):
             name = f"c{index}-{k}"
@@ -223,14 +235,15 @@ class Matrix:
             has_own_times = combination.output == "every" and not (
                 combination.has_equal_steps and smooth and combination.method != '"exact"')
             expected = compared(reference, found, has_own_times, smooth)
-            error = largest_error(found, expected, reference, combination.model.least_size)
+            error = largest_error(found, expected, sizes)
             if error is None and name in failures:
                 may_end = combination.name in self.known_ends
                 (self.ended if may_end else self.wrong).append((combination, f"ends: {failures[name]}"))
                 return
             errors.append(error)
             steps = results / f"{name}.steps.csv"
-            numbers.append(steps_chosen(steps, combination.model.duration / 50) if steps.exists() else None)
+            is_ruled = combination.has_inertia_jump and steps.exists()
+            numbers.append(steps_chosen(steps, combination.model.duration / 50) if is_ruled else None)
         line = judge(combination, errors, floor, numbers)
         (self.wrong if line else self.right).append((combination, line or "right"))
 
