@@ -279,6 +279,7 @@ class Flow:
             goal = min(target, self.piece_end)
             span = goal - self.t if self._exact else min(goal - self.t, self.stride)
             if span <= self._ladder[-3]:
+                self._creep(span)
                 self.t = goal
                 continue
             coefficients, good = self._fit(span)
@@ -292,7 +293,16 @@ class Flow:
                 if watch:
                     watch(self)
             if coefficients is not None:
+                self._creep(stop - self.t)
                 self.t = stop
+
+    def _creep(self, span):
+        """What is left of a stride, below the shortest one: without contacts strides are long beside the fastest mode."""
+        if not self.contacts:
+            force = -self.squares * self.eta - self.c @ self.rate
+            for vector, law in zip(self.modal_loads, self.laws):
+                force = force + vector * law.value(self.t, 1)
+            self.eta, self.rate = self.eta + span * self.rate, self.rate + span * force
 
     def _move(self, level, coefficients):
         """Takes the stride of a level, or goes to the transition in it. Returns the laws there, None after a
