@@ -2,6 +2,7 @@
 
 #include "support/frame.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -201,6 +202,80 @@ TEST(StructureInSpaceFault, NamesAnOrientationAlongTheBeam) {
         mast.nodes[1].position = {0.0, 3.0};
       }),
       "node \"top\" has 2 numbers for its position, and node \"foot\" has 3: a model lies in the plane or in space");
+}
+
+/// What is said of the mast with an arm to (2, 1, 4) and releases at its free end; "accepted" if nothing.
+std::string verdict_of_oblique_arm(
+    const std::vector<std::string>& released, const std::function<void(StructureDescription&)>& change = [](auto&) {}) {
+  ModelDescription description = mast();
+  description.structure.nodes[2].position = {2.0, 1.0, 4.0};
+  description.structure.beams[1].release[1] = released;
+  change(description.structure);
+  try {
+    (void)build(description, {});
+    return "accepted";
+  } catch (const InvalidInput& fault) {
+    return fault.message();
+  }
+}
+
+// About the arm, (2, 1, 1) / sqrt(6), about its local y, which is normal to it and in the plane with z, and along the
+// arm itself.
+TEST(ReleaseFault, NamesAFreeEndThatMovesObliquelyWithoutInertia) {
+  EXPECT_EQ(verdict_of_oblique_arm({"rx"}),
+            "the releases of beams leave node \"arm\" free to turn about (0.816, 0.408, 0.408), oblique to the axes of "
+            "the model, without mass or stiffness; leave out one of them, or give the node a [[mass]] with an inertia");
+  EXPECT_THAT(verdict_of_oblique_arm({"ry"}), ::testing::HasSubstr("free to turn about (-0.365, -0.183, 0.913)"));
+  EXPECT_THAT(verdict_of_oblique_arm({"x"}), ::testing::HasSubstr("free to move along (0.816, 0.408, 0.408)"));
+  EXPECT_THAT(verdict_of_oblique_arm({"ry", "rz"}), ::testing::HasSubstr("free to turn about"));
+  const auto in_plane = verdict_of_frame([](auto& frame) {
+    frame.nodes.push_back(testing::node_at("8", 4.0, 3.7));
+    frame.beams.push_back(frame.beams[0]);
+    frame.beams.back().nodes = {"1", "8"};
+    frame.beams.back().release[1] = {"x"};
+  });
+  EXPECT_THAT(in_plane, ::testing::HasSubstr("node \"8\" free to move along (0.707, 0.707), oblique"));
+}
+
+// An inertia however small, a second beam or a support at the end, and what all rotations or an axis of the model
+// release.
+TEST(Release, IsNoFaultWhereEveryMotionOfItsNodeHasInertiaOrDoesNotExist) {
+  const auto with_inertia = [](auto& frame) {
+    PointMassDescription mass;
+    mass.node = "arm";
+    mass.inertia = {1e-9, 1e-9, 1e-9};
+    frame.masses = {mass};
+  };
+  const auto with_beam = [](auto& frame) {
+    frame.nodes.push_back({"end", {3.0, 1.0, 5.0}, {}});
+    frame.beams.push_back(frame.beams[1]);
+    frame.beams.back().nodes = {"arm", "end"};
+    frame.beams.back().release = {};
+  };
+  const auto with_support = [](auto& frame) {
+    SupportDescription support;
+    support.node = "arm";
+    support.fix = {"rx"};
+    frame.supports.push_back(support);
+  };
+  for (const std::string axis : {"rx", "ry", "rz"})
+    for (const auto& held :
+         std::vector<std::function<void(StructureDescription&)>>{with_inertia, with_beam, with_support})
+      EXPECT_EQ(verdict_of_oblique_arm({axis}, held), "accepted") << axis;
+  EXPECT_EQ(verdict_of_oblique_arm({"ry"},
+                                   [&](auto& frame) {  // hinges about other directions at one node
+                                     with_beam(frame);
+                                     frame.beams.back().release[0] = {"ry"};
+                                   }),
+            "accepted");
+  EXPECT_EQ(verdict_of_oblique_arm({"rx", "ry", "rz"}), "accepted");
+  for (const std::vector<std::string>& released :
+       {std::vector<std::string>{"rx"}, {"ry"}, {"rz"}, {"x"}, {"ry", "rz"}, {"rx", "ry"}})
+    EXPECT_EQ(verdict_of_oblique_arm(released,
+                                     [](auto& frame) {
+                                       frame.nodes[2].position = {2.0, 1e-7, 3.0};  // along x to seven digits
+                                     }),
+              "accepted");
 }
 
 }  // namespace

@@ -112,6 +112,22 @@ TEST(Assemble, NamesTheCoordinateThatHasNoMass) {
   }
 }
 
+// Inertia along two of three oblique directions: the third has none but for round-off, of either sign.
+TEST(Assemble, RefusesAMassMatrixThatIsSingularToRoundOff) {
+  for (int i = 1; i <= 20; ++i) {
+    const Eigen::Vector3d a(1.0, 0.3 * i, -0.7), b(0.2, 1.0 / i, 1.1), along = a.normalized();
+    model::Model m;
+    m.coordinates = {"a", "b", "c"};
+    model::FullMatrices full;
+    full.mass = testing::sparse(Matrix(2.0 * along * along.transpose() + b * b.transpose()));
+    full.stiffness = testing::sparse(Matrix::Identity(3, 3));
+    full.damping = SparseMatrix(3, 3);
+    m.matrices = full;
+    m.position = m.velocity = Vector::Zero(3);
+    EXPECT_THROW(assemble(m), InvalidInput) << i;
+  }
+}
+
 // A jump has a value on either side; between rows the table is linear; outside it says what it was told.
 TEST(TableLaw, HasALeftAndARightValueWhereItJumps) {
   model::TableLaw table{{0.0, 1.0, 1.0, 3.0}, {0.0, 2.0, 5.0, 7.0}, model::TableLaw::Beyond::zero, ""};

@@ -244,41 +244,34 @@ class StructureBuilder {
                                                    part, between));
       element.second = nodes_.add_between(between, beam.where, first, last, share);
       element.properties = properties_at(i == 1, false);
-      add_element(element, true);
+      add_element(element, true, beam.release_where);
       element.first = element.second;
     }
     element.second = last;
     element.properties = properties_at(beam.elements == 1, true);
-    add_element(element, true);
+    add_element(element, true, beam.release_where);
   }
 
-  void add_element(const LineElement& element, bool is_beam) {
+  void add_element(const LineElement& element, bool is_beam, const Location& where) {
     built_.structure.elements.push_back(element);
-    if (built_.structure.properties[static_cast<std::size_t>(element.properties)].released != 0)
-      return take_inertias_of(element);
+    const std::uint16_t released = built_.structure.properties[static_cast<std::size_t>(element.properties)].released;
+    if (released != 0) return take_kept_axes(element, released, where);
     for (const Index node : {element.first, element.second}) nodes_.give_axes(node, is_beam);
   }
 
-  /// A degree of freedom that all elements of a node release has no inertia, and does not exist.
-  void take_inertias_of(const LineElement& element) {
-    Structure alone;
-    alone.dimension = built_.structure.dimension;
-    for (const Index node : {element.first, element.second})
-      alone.positions.push_back(built_.structure.positions[static_cast<std::size_t>(node)]);
-    alone.places.resize(2);
-    alone.properties = {built_.structure.properties[static_cast<std::size_t>(element.properties)]};
-    ElementEquations equations;
-    equations_of(alone, {0, 1, 0, element.orientation}, equations);
-    constexpr double none = 1e-12;  // of the largest of its kind: round-off of turning the axes
-    std::array<double, 2> largest{};
-    for (int i = 0; i < equations.size; ++i) {
-      double& kind = largest[is_rotation(equations.axis[static_cast<std::size_t>(i)])];
-      kind = std::max(kind, equations.mass(i, i));
-    }
-    for (int i = 0; i < equations.size; ++i) {
-      const std::size_t axis = equations.axis[static_cast<std::size_t>(i)];
-      const Index node = i < equations.size / 2 ? element.first : element.second;
-      if (equations.mass(i, i) > none * largest[is_rotation(axis)]) nodes_.give_axis(node, axis);
+  /// An element has inertia in every motion of the axes that it does not release, and in no other: a degree of freedom
+  /// that all elements of a node release does not exist.
+  void take_kept_axes(const LineElement& element, std::uint16_t released, const Location& where) {
+    const Eigen::Matrix3d axes = axes_of(built_.structure, element, true);
+    const int width = in_plane() ? 3 : 6;
+    static constexpr std::array<std::size_t, 3> of_plane{0, 1, 5};
+    for (const bool is_second : {false, true}) {
+      std::array<bool, 6> is_kept{};
+      for (int i = 0; i < width; ++i) {
+        const auto place = static_cast<std::size_t>(i);
+        is_kept[in_plane() ? of_plane[place] : place] = (released >> (is_second ? width + i : i) & 1) == 0;
+      }
+      nodes_.give_kept_axes(is_second ? element.second : element.first, is_kept, axes, where);
     }
   }
 
@@ -291,7 +284,7 @@ class StructureBuilder {
     LineProperties p = properties_of(truss, part, unused);
     p.kind = LineProperties::Kind::truss;
     p.shear_modulus = 0.0;
-    add_element({ends[0], ends[1], add_properties(p), Axis::Zero()}, false);
+    add_element({ends[0], ends[1], add_properties(p), Axis::Zero()}, false, truss.where);
   }
 
   const StructureDescription& description_;

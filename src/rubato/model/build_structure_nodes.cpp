@@ -2,12 +2,22 @@
 #include <rubato/model/build_structure_nodes.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
 namespace rubato::model {
+namespace {
+
+// The square of the angle [rad] below which directions count as one: positions with six digits mean no more, and what
+// is left of the inertia of a motion, this share of it, nears round-off.
+constexpr double same_direction = 1e-12;
+
+}  // namespace
 
 void StructureNodes::add(const std::string& name, const Location& where, const Axis& position) {
   refuse_unfit_name(name, where);
@@ -74,13 +84,33 @@ Index StructureNodes::add_between(const std::string& name, const Location& where
   return static_cast<Index>(states_.size()) - 1;
 }
 
+bool StructureNodes::exists(const NodeState& state, std::size_t axis) {
+  const auto i = static_cast<Index>(axis % 3);
+  return state.inertia[is_rotation(axis)](i, i) > same_direction;
+}
+
+void StructureNodes::give_axis(NodeState& state, std::size_t axis) {
+  const auto i = static_cast<Index>(axis % 3);
+  state.inertia[is_rotation(axis)](i, i) += 1.0;
+}
+
 void StructureNodes::give_axes(Index node, bool has_rotations) {
-  auto& exists = states_[static_cast<std::size_t>(node)].exists;
-  exists[0] = exists[1] = true;
-  exists[2] = exists[2] || !in_plane();
-  if (!has_rotations) return;
-  exists[5] = true;
-  exists[3] = exists[4] = !in_plane();
+  NodeState& state = states_[static_cast<std::size_t>(node)];
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const bool is_in_plane = axis < 2 || axis == 5;
+    if ((is_in_plane || !in_plane()) && (has_rotations || !is_rotation(axis))) give_axis(state, axis);
+  }
+}
+
+void StructureNodes::give_kept_axes(Index node, const std::array<bool, 6>& is_kept, const Eigen::Matrix3d& axes,
+                                    const Location& where) {
+  NodeState& state = states_[static_cast<std::size_t>(node)];
+  state.release_where = where;
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    if (!is_kept[axis]) continue;
+    const Axis direction = axes.row(static_cast<Index>(axis % 3));
+    state.inertia[is_rotation(axis)] += direction * direction.transpose();
+  }
 }
 
 void StructureNodes::take_masses_and_supports() {
@@ -98,7 +128,7 @@ void StructureNodes::take_mass(const PointMassDescription& mass) {
     const double value = positive(*mass.mass, parameters_, part + ": mass");
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(structure_.dimension); ++axis) {
       state.mass[axis] += value;
-      state.exists[axis] = true;
+      give_axis(state, axis);
     }
   }
   if (mass.inertia.empty()) return;
@@ -111,7 +141,7 @@ void StructureNodes::take_mass(const PointMassDescription& mass) {
   for (std::size_t i = 0; i < wanted; ++i) {
     const std::size_t axis = in_plane() ? 5 : 3 + i;
     state.mass[axis] += positive(mass.inertia[i], parameters_, part + ": inertia");
-    state.exists[axis] = true;
+    give_axis(state, axis);
   }
 }
 
@@ -138,7 +168,7 @@ void StructureNodes::refuse_lost_velocity(std::size_t node) const {
   if (node >= description_.nodes.size()) return;  // within a beam
   const NodeState& state = states_[node];
   for (std::size_t axis = 0; axis < 6; ++axis) {
-    if (state.velocity[axis] == 0.0 || (state.exists[axis] && !state.is_fixed[axis])) continue;
+    if (state.velocity[axis] == 0.0 || (exists(state, axis) && !state.is_fixed[axis])) continue;
     const NodeDescription& given = description_.nodes[node];
     throw InvalidInput(
         is_rotation(axis) ? given.angular_velocity_where : given.velocity_where,
@@ -148,17 +178,50 @@ void StructureNodes::refuse_lost_velocity(std::size_t node) const {
   }
 }
 
+/// Releases oblique to the axes of the model may leave a node free to move, along or about a direction between them,
+/// without inertia: the mass matrix is singular then, and no stiffness holds the motion either.
+void StructureNodes::refuse_direction_without_inertia(std::size_t node) const {
+  const NodeState& state = states_[node];
+  for (const std::size_t kind : {0, 1}) {
+    // What is held or does not exist gets an inertia, so that the lowest direction is one of the others.
+    Eigen::Matrix3d inertia = state.inertia[kind];
+    for (Index i = 0; i < 3; ++i) {
+      const std::size_t axis = 3 * kind + static_cast<std::size_t>(i);
+      if (exists(state, axis) && !state.is_fixed[axis]) continue;
+      inertia.row(i).setZero();
+      inertia.col(i).setZero();
+      inertia(i, i) = 1.0;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(inertia);
+    if (directions.eigenvalues()[0] > same_direction) continue;
+    Axis direction = directions.eigenvectors().col(0);
+    Index largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    direction /= direction[largest] < 0.0 ? -1.0 : 1.0;
+    for (Index i = 0; i < 3; ++i)
+      if (std::abs(direction[i]) < 1e-6) direction[i] = 0.0;  // round-off
+    throw InvalidInput(
+        state.release_where,
+        fmt::format("the releases of beams leave node \"{}\" free to {} ({:.3g}), oblique to the axes of the model, "
+                    "without mass or stiffness; leave out one of them, or give the node a [[mass]] with {}",
+                    structure_.names[node], kind == 0 ? "move along" : "turn about",
+                    fmt::join(std::span(direction.data(), static_cast<std::size_t>(structure_.dimension)), ", "),
+                    kind == 0 ? "a mass" : "an inertia"));
+  }
+}
+
 void StructureNodes::number(Index offset, BuiltStructure& built) {
   for (std::size_t node = 0; node < states_.size(); ++node) {
     const NodeState& state = states_[node];
-    if (std::none_of(state.exists.begin(), state.exists.end(), [](bool e) { return e; }))
+    if (state.inertia[0].isZero() && state.inertia[1].isZero())
       throw InvalidInput(state.where, fmt::format("node \"{}\" is joined by nothing: no beam, truss or mass names it",
                                                   structure_.names[node]));
     refuse_lost_velocity(node);
+    refuse_direction_without_inertia(node);
     std::array<Index, 6> places{};
     places.fill(ground);
     for (std::size_t axis = 0; axis < 6; ++axis) {
-      if (!state.exists[axis] && !state.is_fixed[axis]) continue;
+      if (!exists(state, axis) && !state.is_fixed[axis]) continue;
       std::string name = structure_.names[node] + "." + axis_names[axis];
       if (state.is_fixed[axis]) {
         built.fixed.insert(std::move(name));

@@ -35,25 +35,37 @@ class StructureNodes {
 
   /// What a line gives to its ends: translations, a beam rotations too.
   void give_axes(Index node, bool has_rotations);
-  void give_axis(Index node, std::size_t axis) { states_[static_cast<std::size_t>(node)].exists[axis] = true; }
+  /// What a beam with releases gives to its ends: the inertia of the motions of its own axes that it keeps.
+  /// @param is_kept  of x, y, z, rx, ry, rz in the axes of the beam
+  /// @param axes     rows: those of the beam, in the axes of the model
+  /// @param where    of the releases, for messages
+  void give_kept_axes(Index node, const std::array<bool, 6>& is_kept, const Eigen::Matrix3d& axes,
+                      const Location& where);
 
  private:
   struct NodeState {
-    std::array<bool, 6> exists{}, is_fixed{};
+    std::array<bool, 6> is_fixed{};
     std::array<double, 6> mass{}, velocity{};
-    Location where;
+    /// Of translations and of rotations: the sum of d d^T over unit vectors d along or about which something at the
+    /// node has an inertia of its own. A direction in which it is zero has none.
+    std::array<Eigen::Matrix3d, 2> inertia{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+    Location where, release_where;
   };
 
   double evaluated(const Quantity& quantity, const std::string& what) const {
     return evaluate(quantity, parameters_, what);
   }
   bool in_plane() const { return structure_.dimension == 2; }
+  /// Something gives the degree of freedom an inertia.
+  static bool exists(const NodeState& state, std::size_t axis);
+  static void give_axis(NodeState& state, std::size_t axis);
 
   void add(const std::string& name, const Location& where, const Axis& position);
   void take_velocity(const NodeDescription& node, NodeState& state) const;
   void take_mass(const PointMassDescription& mass);
   void take_support(const SupportDescription& support);
   void refuse_lost_velocity(std::size_t node) const;
+  void refuse_direction_without_inertia(std::size_t node) const;
 
   const StructureDescription& description_;
   const numerics::Parameters& parameters_;

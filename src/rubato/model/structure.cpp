@@ -10,6 +10,11 @@ namespace rubato::model {
 
 namespace {
 
+Axis along_of(const Structure& structure, const LineElement& element) {
+  return structure.positions[static_cast<std::size_t>(element.second)] -
+         structure.positions[static_cast<std::size_t>(element.first)];
+}
+
 void equations_with(const LineProperties& properties, const Structure& structure, const LineElement& element,
                     ElementEquations& equations) {
   const bool is_beam = properties.kind == LineProperties::Kind::beam;
@@ -24,20 +29,22 @@ void equations_with(const LineProperties& properties, const Structure& structure
     equations.axis[static_cast<std::size_t>(i)] = axis;
     equations.place[static_cast<std::size_t>(i)] = structure.places[node][axis];
   }
-  const Axis along = structure.positions[static_cast<std::size_t>(element.second)] -
-                     structure.positions[static_cast<std::size_t>(element.first)];
-  local_matrices(properties, structure.dimension, along.norm(), equations.stiffness, equations.mass);
+  const double length = along_of(structure, element).norm();
+  local_matrices(properties, structure.dimension, length, equations.stiffness, equations.mass);
   if (properties.released != 0) (void)release(properties.released, equations.stiffness, equations.mass);
-  // A truss is the same about its axis, and so is its mass: any orientation across it will do.
-  const Axis across = in_plane  ? Axis(-along.y(), along.x(), 0.0)
-                      : is_beam ? element.orientation
-                                : along.unitOrthogonal();
-  const Eigen::Matrix3d axes = local_axes(along, across);
+  const Eigen::Matrix3d axes = axes_of(structure, element, is_beam);
   turn_into_model_axes(axes, structure.dimension, is_beam, equations.stiffness);
   turn_into_model_axes(axes, structure.dimension, is_beam, equations.mass);
 }
 
 }  // namespace
+
+Eigen::Matrix3d axes_of(const Structure& structure, const LineElement& element, bool is_beam) {
+  const Axis along = along_of(structure, element);
+  if (structure.dimension == 2) return local_axes(along, Axis(-along.y(), along.x(), 0.0));
+  // A truss is the same about its axis, and so is its mass: any orientation across it will do.
+  return local_axes(along, is_beam ? element.orientation : Axis(along.unitOrthogonal()));
+}
 
 void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations) {
   equations_with(structure.properties[static_cast<std::size_t>(element.properties)], structure, element, equations);

@@ -40,6 +40,9 @@ struct ElementEquations {
   LineMatrix stiffness, mass;          ///< [k x k]
 };
 
+/// The axes of an element, as rows in those of the model; the third is that of the plane.
+Eigen::Matrix3d axes_of(const Structure& structure, const LineElement& element, bool is_beam);
+
 /// The equations of an element of a structure. `equations` is overwritten; allocates nothing.
 void equations_of(const Structure& structure, const LineElement& element, ElementEquations& equations);
 

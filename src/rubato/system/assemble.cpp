@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rubato::system {
@@ -58,8 +59,8 @@ SparseMatrix from_triplets(Index n, const Triplets& entries) {
   return matrix;
 }
 
-/// @param is_sum  of masses and elements, each of which has inertia in every motion of its own degrees of freedom: then
-///                the sum has it in every motion of all, and a factorisation would find nothing
+/// @param is_sum  of masses and elements: then every motion of a node has inertia once a model is built, so has every
+///                motion of all, and a factorisation would find nothing
 void require_positive_definite(const SparseMatrix& mass, const std::vector<std::string>& names, bool is_sum) {
   // The diagonal first: it names the coordinate.
   const Vector entries = mass.diagonal();
@@ -74,6 +75,26 @@ void require_positive_definite(const SparseMatrix& mass, const std::vector<std::
   factor.analyse(mass);
   if (!factor.factorise(mass))
     throw InvalidInput("the mass matrix is not positive definite: some motion of the coordinates has no mass");
+  // A matrix that is singular but for round-off passes: inverse iteration, in coordinates that all have the mass 1,
+  // finds the motion with the least mass.
+  constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
+  const Vector root = entries.cwiseSqrt();
+  Vector motion = Vector::LinSpaced(entries.size(), 1.0, 2.0).normalized(), force;
+  double least = 1.0;
+  for (int i = 0; i < 3 && least > round_off; ++i) {
+    force = root.cwiseProduct(motion);
+    factor.solve(force, motion);
+    motion = root.cwiseProduct(motion).eval();
+    least = 1.0 / motion.norm();
+    motion *= least;
+  }
+  if (least > round_off) return;
+  Index largest = 0;
+  motion.cwiseAbs().maxCoeff(&largest);
+  throw InvalidInput(
+      fmt::format("the mass matrix is singular: a motion of \"{}\" together with other coordinates has no mass but "
+                  "round-off; give it one, or remove the coordinate",
+                  names[static_cast<std::size_t>(largest)]));
 }
 
 // M Phi diag(2 zeta omega) Phi^T M with Phi^T M Phi = 1.
@@ -216,10 +237,7 @@ AssembledModel assemble_with_loads(const model::Model& model) {
     parts.mass = from_triplets(n, mass);
     parts.stiffness = from_elements(n, model.springs, std::move(stiffness));
   }
-  const auto& properties = model.structure.properties;
-  const bool has_releases =
-      std::any_of(properties.begin(), properties.end(), [](const auto& p) { return p.released != 0; });
-  require_positive_definite(parts.mass, model.coordinates, !model.matrices && !has_releases);
+  require_positive_definite(parts.mass, model.coordinates, !model.matrices.has_value());
   parts.damping =
       damping_matrix(model, parts.mass, parts.stiffness) + from_elements(n, model.dashpots, std::move(damping));
   if (model.matrices && model.matrices->damping.nonZeros() > 0)
