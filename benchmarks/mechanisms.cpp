@@ -64,8 +64,9 @@ Ran run(const system::Mechanism& mechanism, const Choice& choice, double end, Ob
       plan.rebuild = false;
       plan.first = 1e-3;
     }
-    const auto estimator = make_estimator(kind, std::get<GeneralizedAlpha>(choice.method.formula),
-                                          make_error_space(mechanism), ran.state, end);
+    const auto estimator =
+        make_estimator(kind, std::get<GeneralizedAlpha>(choice.method.formula),
+                       make_error_space(mechanism, ran.state, choice.step_or_tolerance), ran.state, end);
     MechanismTimeline timeline(mechanism, 1e-12 * end);
     const AdaptiveReport report = march(*stepper, *estimator, plan, timeline, ran.state, end, observer);
     ran.steps = report.march.steps;

@@ -24,7 +24,7 @@ class Model:
     @property
     def least_size(self):
         """Of what errors are relative to, in each unit."""
-        return 1.0 if self.mechanism else 0.0
+        return 0.01 if self.mechanism else 0.0
 
 
 EXACT = 'method = "exact"'

@@ -14,8 +14,8 @@ Right means:
   whole, and no more can be lost). This goes for the tolerances that choose the steps; of a loose one the longest may do.
 A run that ends with a message is wrong too, unless `known_ends.txt` names it.
 Errors are those of positions, in each unit relative to the largest value of the reference, over all rows; of mechanisms
-to no less than a metre and a radian, by which their tolerance is measured while they have come less far. The reference of
-a model is another route: the exact flow, or a march at a tolerance far below. Rows at times of their own (`output.every`
+to no less than a hundredth of a metre and a radian, by which their tolerance is measured while they have come less far. The
+reference of a model is another route: the exact flow, or a march at a tolerance far below. Rows at times of their own (`output.every`
 of steps that choose themselves) are compared with cubics through the rows of the reference: the last and ten others, since
 at one time alone an error may vanish by chance. Across transitions, where cubics err, the last is compared alone.
 """

@@ -29,9 +29,9 @@ MechanismMarch::MechanismMarch(const MechanismPlan& plan, const system::Mechanis
                                std::holds_alternative<integrate::PiControl>(step.plan.controller);
   newton.avoids_singular_ends = !has_equal_steps();
   stepper_ = integrate::make_mechanism_stepper(transient.method, mechanism, newton, plan.allow_unstable);
-  estimator_ =
-      integrate::make_estimator(step.estimator, std::get<integrate::GeneralizedAlpha>(transient.method.formula),
-                                integrate::make_error_space(mechanism), transient.start, transient.duration);
+  estimator_ = integrate::make_estimator(
+      step.estimator, std::get<integrate::GeneralizedAlpha>(transient.method.formula),
+      integrate::make_error_space(mechanism, transient.start, step.tolerance), transient.start, transient.duration);
   if (!has_equal_steps()) return;  // with steps that change it is carried over by the march
   system::MechanismEquations equations(mechanism);
   integrate::shift_acceleration(equations, state_, stepper_->shift() * step.plan.first);

@@ -22,6 +22,8 @@ class MechanismMarch {
 
   bool has_equal_steps() const;
   const system::State& state() const { return state_; }
+  /// By which errors are measured now [m sqrt(kg)]; 0: by no size of the motion.
+  double error_size() const { return estimator_->size(); }
   const integrate::MechanismTimeline& timeline() const { return timeline_; }
 
  private:

@@ -100,7 +100,7 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
                        title + "\"reference\" and \"as_printed\" belong to the estimator inertia_jump");
   try {
     (void)integrate::make_estimator(step.estimator, std::get<integrate::GeneralizedAlpha>(method.formula),
-                                    integrate::make_error_space(mechanism), start, duration);
+                                    integrate::make_error_space(mechanism, start, step.tolerance), start, duration);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }

@@ -55,8 +55,6 @@ class MechanismObserver final : public integrate::Observer {
   double largest_drift() const { return largest_drift_; }
   /// The longest way from where the run starts, in the mass norm [m sqrt(kg)].
   double largest_way() const { return largest_way_; }
-  /// The same from the configuration given, from which estimators measure the size of the motion.
-  double largest_displacement() const { return largest_displacement_; }
 
   void finish(const system::State& state) {
     if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
@@ -79,15 +77,10 @@ class MechanismObserver final : public integrate::Observer {
     largest_drift_ = std::max(largest_drift_, drift_.cwiseAbs().maxCoeff());
   }
 
-  double way_between(const Vector& from, const Vector& to) {
-    mechanism_.difference(from, to, way_);
-    mechanism_.times_mass(way_, momentum_);
-    return std::sqrt(way_.dot(momentum_));
-  }
-
   void note_way(const system::State& state) {
-    largest_way_ = std::max(largest_way_, way_between(from_, state.q));
-    largest_displacement_ = std::max(largest_displacement_, way_between(mechanism_.start().q, state.q));
+    mechanism_.difference(from_, state.q, way_);
+    mechanism_.times_mass(way_, momentum_);
+    largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
   }
 
   double next_time() const {
@@ -120,7 +113,7 @@ class MechanismObserver final : public integrate::Observer {
   double largest_drift_ = 0.0;
   const system::Mechanism& mechanism_;
   Vector from_, way_, momentum_;
-  double largest_way_ = 0.0, largest_displacement_ = 0.0;
+  double largest_way_ = 0.0;
   system::State state_;
   long steps_ = 0, next_ = 0;
   bool last_recorded_ = false;
@@ -133,21 +126,25 @@ std::string energy_told(const integrate::LockEvent& event) {
   return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
 }
 
-/// What to tell of a motion so small beside the size by which its errors are measured that the tolerance does not hold
-/// for it; empty: nothing.
-std::string warning_of_small_motion(const MechanismObserver& observer, const AutomaticStep& step,
+/// What to tell of a motion so small beside the size by which its errors are measured that they may be more than ten
+/// tolerances and two thousandths of what moves; empty: nothing.
+/// @param way, size  [m sqrt(kg)]
+std::string warning_of_small_motion(double way, double size, const AutomaticStep& step,
                                     const system::Mechanism& mechanism) {
-  constexpr double small = 0.01;
-  const double way = observer.largest_way();
-  const double size = std::max(integrate::make_error_space(mechanism)->least_size(), observer.largest_displacement());
-  const bool is_by_size = !std::holds_alternative<integrate::InertiaJump>(step.estimator) && step.asks_for_tolerance;
+  constexpr double small = 0.03;  // errors are a third of the tolerance, mostly
+  constexpr double advised = 1e-3, told = 2e-3;
+  constexpr int enough = 60;  // the logarithm of what is left is halved by each
   // What Newton's method leaves of a mechanism that stands is no motion.
   constexpr double stands = 1e-9;
-  if (!is_by_size || way <= stands * size || way >= small * size) return {};
+  const double error = step.tolerance * size / way;
+  if (!step.asks_for_tolerance || way <= stands * size || way >= small * size || error < told) return {};
+  const double share = std::min(advised, step.tolerance);
+  double tolerance = step.tolerance;
+  for (int i = 0; i < enough; ++i) tolerance = share * way / std::max(way, integrate::least_size(mechanism, tolerance));
   return fmt::format(
       "the motion is small beside the mechanism: it goes {:.3g} m sqrt(kg) at most, and the tolerance {} is a share of "
-      "{:.3g}, so that errors may be up to {:.2g} times the tolerance of what moves; take tolerance = {:.1g}",
-      way, step.tolerance, size, size / way, step.tolerance * way / size);
+      "{:.3g}, so that errors may be {:.2g} of what moves; for {:.1g} of it take tolerance = {:.1g}",
+      way, step.tolerance, size, error, share, tolerance);
 }
 
 /// The locks on which a run starts at rest, as if they had engaged then.
@@ -224,7 +221,9 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   run.warnings = plan.warnings;
   if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
     run.warnings.push_back(warning);
-  if (const std::string warning = warning_of_small_motion(observer, *transient.automatic, mechanism); !warning.empty())
+  if (const std::string warning =
+          warning_of_small_motion(observer.largest_way(), march.error_size(), *transient.automatic, mechanism);
+      !warning.empty())
     run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
     run.warnings.push_back(fmt::format(

@@ -45,7 +45,7 @@ March march_paper(const system::Mechanism& mechanism, double tolerance, double f
   EXPECT_TRUE(start.is_consistent);
   result.state = start.state;
   const auto estimator = make_estimator(InertiaJump{tolerance, mechanism.reference(), true}, alpha,
-                                        make_error_space(mechanism), result.state, end);
+                                        make_error_space(mechanism, result.state, tolerance), result.state, end);
   StepPlan plan;
   plan.controller = CardonaCassano{};
   plan.first = first;
@@ -112,7 +112,7 @@ TEST(AdaptiveDoublePendulum, KeepsToTheToleranceOfTheDefaultControl) {
   for (const double tolerance : {1e-3, 1e-4}) {
     system::State state = make_consistent(equations, mechanism.start()).state;
     const auto estimator = make_estimator(LocalError{tolerance}, std::get<GeneralizedAlpha>(method.formula),
-                                          make_error_space(mechanism), state, 5.0);
+                                          make_error_space(mechanism, state, tolerance), state, 5.0);
     StepPlan plan;
     plan.smallest = 1e-12;
     plan.largest = 0.1;

@@ -193,7 +193,7 @@ TEST(FourBars, PassTheirSingularPositionsWithStepsThatChooseThemselves) {
        {3.2186073460081994e-6, 1.0902536648152616e-6}) {  // two of which some step would end in line to 1e-6 rad
     system::State state = make_consistent(equations, mechanism.start()).state;
     const auto estimator = make_estimator(LocalError{tolerance}, std::get<GeneralizedAlpha>(method.formula),
-                                          make_error_space(mechanism), state, 10.0);
+                                          make_error_space(mechanism, state, tolerance), state, 10.0);
     StepPlan plan;
     plan.smallest = 1e-11;
     plan.largest = 0.2;

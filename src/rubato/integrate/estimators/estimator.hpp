@@ -40,6 +40,9 @@ class Estimator {
   /// nothing moves.
   virtual double first_step() const = 0;
 
+  /// The size of the motion by which errors are measured now [m sqrt(kg)]; 0: another measure.
+  virtual double size() const { return 0.0; }
+
   /// Solves that the estimator itself makes for one try, beside the stepper's.
   virtual int solves_a_try() const { return 0; }
   virtual int factorisations() const { return 0; }

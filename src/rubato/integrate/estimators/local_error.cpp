@@ -71,6 +71,7 @@ class LocalErrorEstimator final : public Estimator {
 
   void forget() override { known_ = 0; }
   int exponent() const override { return c_.order; }
+  double size() const override { return scales_.size(); }
 
   double first_step() const override {
     const double third = scales_.third_derivative(), omega = scales_.frequency();

@@ -7,10 +7,17 @@
 namespace rubato::integrate {
 namespace {
 
+double extent_of(const system::Mechanism& mechanism) {
+  return mechanism.reference() > 0.0 ? mechanism.reference() : std::sqrt(mechanism.mass().diagonal().sum());
+}
+
 class MechanismSpace final : public ErrorSpace {
  public:
-  explicit MechanismSpace(const system::Mechanism& mechanism)
+  MechanismSpace(const system::Mechanism& mechanism, const system::State& start, double tolerance)
       : mechanism_(mechanism),
+        start_(start.q),
+        extent_(extent_of(mechanism)),
+        least_(integrate::least_size(mechanism, tolerance)),
         equations_(mechanism),
         product_(mechanism.size()),
         travel_(mechanism.size()),
@@ -24,19 +31,17 @@ class MechanismSpace final : public ErrorSpace {
     return product_;
   }
   double displacement(const system::State& state) override {
-    mechanism_.difference(mechanism_.start().q, state.q, travel_);
+    mechanism_.difference(start_, state.q, travel_);
     return norm(travel_);
   }
-  double least_size() override {
-    return mechanism_.reference() > 0.0 ? mechanism_.reference() : std::sqrt(mechanism_.mass().diagonal().sum());
-  }
+  double least_size() override { return least_; }
 
   bool turns_freely() const override { return true; }
   bool has_stops() const override { return false; }
   bool touches(const system::State&) const override { return false; }
 
-  /// Nothing: joints keep an acceleration from leading where it points.
-  double promised_size(const ResponseScales&) override { return 0.0; }
+  /// No more than the mechanism's own size: joints keep an acceleration from leading where it points.
+  double promised_size(const ResponseScales& scales) override { return std::min(extent_, scales.size(extent_)); }
 
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
     const auto shape_of = [&](const Vector& x) -> ResponseScales::Shape {
@@ -57,7 +62,7 @@ class MechanismSpace final : public ErrorSpace {
   /// sqrt(x^T K x / x^T M x), K x from the forces at both ends of a small motion along x.
   double frequency(const system::State& state, const Vector& x, double length) {
     constexpr double small = 1e-6;
-    const double way = small * least_size() / length;
+    const double way = small * extent_ / length;
     double work = 0.0;
     for (const double sign : {1.0, -1.0}) {
       moved_ = state;
@@ -72,6 +77,8 @@ class MechanismSpace final : public ErrorSpace {
   }
 
   const system::Mechanism& mechanism_;
+  Vector start_;
+  double extent_, least_;
   system::MechanismEquations equations_;
   Vector product_, travel_;
   system::State moved_;
@@ -80,8 +87,13 @@ class MechanismSpace final : public ErrorSpace {
 
 }  // namespace
 
-std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism) {
-  return std::make_unique<MechanismSpace>(mechanism);
+double least_size(const system::Mechanism& mechanism, double tolerance) {
+  return std::clamp(1e-2 * std::sqrt(1e-4 / tolerance), 1e-2, 1.0) * extent_of(mechanism);
+}
+
+std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism, const system::State& start,
+                                             double tolerance) {
+  return std::make_unique<MechanismSpace>(mechanism, start, tolerance);
 }
 
 }  // namespace rubato::integrate

@@ -7,9 +7,20 @@
 
 namespace rubato::integrate {
 
-/// What estimators ask of a mechanism, which must outlive it. Errors are measured by its reference value, or by that of
-/// one metre and one radian in every coordinate; frequencies by the slope of the forces, those of the constraints
-/// included, along the motion. Configurations have no size of their own.
-std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism);
+/// How large a mechanism is [m sqrt(kg)]: its reference value, or that of one metre and one radian in every coordinate.
+double extent(const system::Mechanism& mechanism);
+
+/// The size by which errors are measured at least [m sqrt(kg)], a share of the mechanism's extent (its reference value,
+/// or that of one metre and one radian in every coordinate): a hundredth for tolerances above 1e-4. Below, it grows
+/// with the root to the whole at 1e-8, since what Newton's method leaves of a step, over its length, must stay below.
+double least_size(const system::Mechanism& mechanism, double tolerance);
+
+/// What estimators ask of a mechanism, which must outlive it. Errors are measured by the way from the start, and
+/// before by what the start promises of it, between the least size and the extent; frequencies by the slope of the
+/// forces, those of the constraints included, along the motion. Configurations have no size of their own.
+/// @param start      of the march
+/// @param tolerance  of the errors [-]
+std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism, const system::State& start,
+                                             double tolerance);
 
 }  // namespace rubato::integrate
