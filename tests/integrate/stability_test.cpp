@@ -55,6 +55,35 @@ TEST(StabilityLimit, DividesGrowthFromNone) {
     }
 }
 
+// A dashpot on one of two masses couples their modes. By the damping of each mode alone the limit of explicit Euler
+// came out 2.3 times too long, and its steps grew without a word.
+TEST(StabilityLimit, OfTwoMassesWithOneDashpotDividesGrowthFromNone) {
+  const auto matrix = [](double a, double b, double c) {
+    Matrix full(2, 2);
+    full << a, b, b, c;
+    return SparseMatrix(full.sparseView());
+  };
+  for (const double dashpot : {0.3, 3.0, 30.0}) {
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = matrix(1.0, 0.0, 0.5);
+    parts.stiffness = matrix(3.0, -1.0, 2.0);
+    parts.damping = matrix(dashpot, 0.0, 0.01);
+    parts.coordinates = {"damped", "free"};
+    parts.start.q = Vector::Constant(2, 0.1);
+    parts.start.v = Vector::Zero(2);
+    const system::LocallyNonlinear system(std::move(parts));
+    for (const char* method : {"explicit_euler", "heun", "rk3", "rk4", "dormand_prince"})
+      for (const double factor : {0.95, 1.05}) {
+        const double h = factor * stability_of(make_method(method), system).step;
+        const auto stepper = make_stepper(make_method(method), system);
+        system::State state = consistent_start(system, system.start());
+        march(*stepper, state, h, 4e5 * h);                    // explicit Euler grows by 2e-5 a step only
+        const bool has_grown = !(std::abs(state.q[1]) < 1.0);  // beyond all numbers, maybe
+        EXPECT_EQ(has_grown, factor > 1.0) << method << ", dashpot " << dashpot;
+      }
+  }
+}
+
 TEST(SpectralRadius, AtInfinityIsWhatTheParametersAskFor) {
   for (const double rho : {0.0, 0.3, 0.8, 0.9}) {
     EXPECT_NEAR(spectral_radius_at_infinity(make_method("generalized_alpha", {{"rho_inf", rho}})), rho, 1e-4)

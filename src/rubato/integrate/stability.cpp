@@ -1,6 +1,7 @@
 #include <rubato/integrate/stability.hpp>
 
 #include <rubato/integrate/stepper.hpp>
+#include <rubato/numerics/eigen_quadratic.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -125,7 +126,35 @@ double imaginary_limit(const numerics::ButcherTableau& tableau) {
 struct Mode {
   double stiffness, damping;  // per unit of modal mass
   Vector shape;
+  double least_damping = 0.0;  // what lies below is round-off
 };
+
+// The eigenvalues of the structure of first order, each as the mode of one coordinate that has it: of a complex pair s
+// both, of a real one s and 0. Nothing where damping couples no modes, or too many of them to solve for all.
+std::vector<Mode> coupled_modes(const std::vector<Mode>& modes, const SparseMatrix& damping) {
+  constexpr std::size_t most = 200;  // half a second
+  if (modes.size() < 2 || modes.size() > most) return {};
+  const auto n = static_cast<Index>(modes.size());
+  Vector squares(n);
+  Matrix shapes(modes[0].shape.size(), n);
+  for (Index i = 0; i < n; ++i) {
+    const Mode& mode = modes[static_cast<std::size_t>(i)];
+    squares[i] = mode.stiffness;
+    shapes.col(i) = mode.shape;
+  }
+  const Matrix coupling = shapes.transpose() * (damping * shapes);
+  const Vector own = coupling.diagonal();
+  if ((coupling - Matrix(own.asDiagonal())).cwiseAbs().maxCoeff() <= 1e-9 * own.cwiseAbs().maxCoeff()) return {};
+  std::vector<Mode> found;
+  const double fastest = std::sqrt(squares.cwiseAbs().maxCoeff()) + own.cwiseAbs().maxCoeff();
+  for (const numerics::QuadraticMode& mode : numerics::quadratic_modes(squares, coupling)) {
+    const std::complex<double> s = mode.eigenvalue;
+    const bool is_real = s.imag() == 0.0;
+    found.push_back({is_real ? 0.0 : std::norm(s), (is_real ? -1.0 : -2.0) * s.real(), (shapes * mode.shape).cwiseAbs(),
+                     1e-14 * fastest});
+  }
+  return found;
+}
 
 std::vector<Mode> modes_of(const system::LocallyNonlinear& system) {
   const SparseMatrix stuck = system.closed_stiffness(), damping = system.closed_damping();
@@ -197,11 +226,14 @@ ModelStability stability_of(const Method& method, const system::LocallyNonlinear
   ModelStability found;
   found.step = infinity;
   if (std::isinf(stability_limit(method))) return found;
-  const std::vector<Mode> modes = modes_of(system);
+  std::vector<Mode> modes = modes_of(system);
+  // Damping does not change the limit of Newmark's methods, and a step of Runge and Kutta treats each eigenvalue alone.
+  if (std::holds_alternative<RungeKutta>(method.formula))
+    if (auto coupled = coupled_modes(modes, system.closed_damping()); !coupled.empty()) modes = std::move(coupled);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const Mode& mode = modes[i];
     const double omega = std::sqrt(std::max(mode.stiffness, 0.0));
-    const double damping = mode.damping > 1e-12 * omega ? mode.damping : 0.0;
+    const double damping = mode.damping > std::max(1e-12 * omega, mode.least_damping) ? mode.damping : 0.0;
     double step = infinity;
     if (damping > 0.0)
       step = first_growth(method, std::max(mode.stiffness, 0.0), damping);
@@ -210,7 +242,11 @@ ModelStability stability_of(const Method& method, const system::LocallyNonlinear
     if (!(step < found.step)) continue;
     Index largest = 0;
     mode.shape.cwiseAbs().maxCoeff(&largest);
-    found = {step, omega, omega > 0.0 ? 0.5 * damping / omega : 0.0,
+    const bool is_real = mode.stiffness == 0.0 && mode.least_damping > 0.0;
+    found = {step, is_real ? damping : omega,
+             is_real       ? 1.0
+             : omega > 0.0 ? 0.5 * damping / omega
+                           : 0.0,
              modes.size() == 1 ? system.size() : static_cast<Index>(i) + 1,
              system.coordinates().empty() ? std::to_string(largest + 1)
                                           : system.coordinates()[static_cast<std::size_t>(largest)]};

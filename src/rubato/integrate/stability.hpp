@@ -38,7 +38,9 @@ struct ModelStability {
   std::string largest_coordinate;  ///< where that mode moves most
 };
 
-/// For the modes with all sliders stuck, each with the damping phi^T C phi of its own (exact for proportional damping).
+/// For the modes with all sliders stuck, each with the damping phi^T C phi of its own. Where C couples them, explicit
+/// Runge-Kutta is judged by the eigenvalues of the coupled structure (up to 200 coordinates); the limit of the other
+/// methods does not fall by damping.
 /// Up to 1,000 coordinates all modes are looked at, beyond the highest one only.
 ModelStability stability_of(const Method& method, const system::LocallyNonlinear& system);
 
