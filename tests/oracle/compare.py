@@ -9,6 +9,8 @@ import tempfile
 
 import numpy
 
+import judge_curve
+import judge_methods
 import judge_response
 import judge_rest
 import judge_transient
@@ -133,10 +135,6 @@ def _without_rows(model, analysis, message):
     return Verdict(name, kind, "failed", message)
 
 
-def _unjudged(study, model, analysis, table, pairs):
-    return Verdict(analysis["name"], analysis["type"], "agrees", "it runs; not judged")
-
-
 _JUDGES = {"static": judge_rest.static, "modes": judge_rest.natural_modes, "transient": judge_transient.transient,
-           "frequency_response": judge_response.frequency_response, "damper_curve": judge_response.damper_curve,
-           "method_study": _unjudged}
+           "frequency_response": judge_response.frequency_response, "damper_curve": judge_curve.damper_curve,
+           "method_study": judge_methods.method_study}

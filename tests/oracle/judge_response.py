@@ -1,4 +1,4 @@
-"""Judges frequency responses and damper curves."""
+"""Judges frequency responses."""
 
 import numpy
 
@@ -12,7 +12,7 @@ def frequency_response(study, model, analysis, table, pairs):
     name = analysis["name"]
     values = table.column("angular_frequency [rad/s]")
     status = table.text("status")
-    parameter = analysis.get("excitation") or _excitation(study)
+    parameter = analysis.get("excitation") or excitation_of(study)
     swept = [p for p in study.parameters if table.has(p)]
     in_hertz = "frequency" in analysis
     checks = []
@@ -52,7 +52,7 @@ def frequency_response(study, model, analysis, table, pairs):
             waves, offsets = None, False
             allowed = (1e-8 if solver != "time_marching" else 4 * asked) + 1e-14 * condition
         amplitudes, roots = {}, {}
-        for coordinate in _observed(analysis, now):
+        for coordinate in observed_of(analysis, now):
             row = now.row(coordinate)
             if waves:
                 x, v = motion["q"] @ row, motion["v"] @ row
@@ -124,7 +124,7 @@ def _linear_limits(study, model, analysis, table, parameter, in_hertz):
         for limit, stiffness in (("free", now.K), ("stuck", now.stuck_stiffness())):
             fundamental, answers, condition = steady.linear(now, stiffness)
             expected = {o: steady.extremes(steady.wave(fundamental, answers, now.row(o)))
-                        for o in _observed(analysis, now)}
+                        for o in observed_of(analysis, now)}
             for coordinate, amplitude in expected.items():
                 for unit, turns in (("amplitude [m]", False), ("angle_amplitude [rad]", True)):
                     header = f"{coordinate}.{limit}_{unit}"
@@ -136,50 +136,14 @@ def _linear_limits(study, model, analysis, table, parameter, in_hertz):
     return checks
 
 
-def damper_curve(study, model, analysis, table, pairs):
-    """At each value the amplitude where the command sees the highest peak, and that it is the highest of a scan."""
-    name = analysis["name"]
-    parameter = analysis.get("excitation") or _excitation(study)
-    values, objective = table.column("angular_frequency [rad/s]"), table.column(next(
-        h for h in table.head if h.startswith("objective")))
-    over, status = analysis["parameter"], table.text("status")
-    in_hertz = "frequency" in analysis
-    limits = [
-        study.number((analysis.get("frequency") or analysis["angular_frequency"])[k]) * (2 * numpy.pi if in_hertz else 1)
-        for k in ("from", "to")]
-    if analysis.get("objective", "amplitude") != "amplitude":
-        return Verdict(name, "damper_curve", "skipped", "friction work")
-    swept = [p for p in study.parameters if table.has(p)]
-    checks = []
-    for i in [0, len(values) - 1]:
-        if status[i] != "converged":
-            continue
-
-        def largest(w):
-            settings = {p: table.column(p)[i] for p in swept}
-            settings.update({over: table.column(over)[i], parameter: w / (2 * numpy.pi) if in_hertz else w})
-            now = read_model(study.with_parameters(settings))
-            rows = [now.row(o) for o in _observed(analysis, now)]
-            if not now.sliders or steady.sticks(now):
-                fundamental, answers, _ = steady.linear(now, now.stuck_stiffness())
-                return max(steady.extremes(steady.wave(fundamental, answers, row)) for row in rows)
-            motion, _, _ = steady.march(now, samples=120)
-            return max(steady.extremes(motion["q"] @ row) for row in rows)
-        there = largest(values[i])
-        checks.append((f"row {i} objective", abs(there - objective[i]) / there, 1e-4))
-        for w in numpy.linspace(limits[0], limits[1], 9):
-            checks.append((f"row {i} a higher response at {w:.6g}", max(largest(w) / objective[i] - 1, 0), 1e-4))
-    return worst(name, "damper_curve", checks)
-
-
-def _observed(analysis, model):
+def observed_of(analysis, model):
     observed = analysis.get("observe")
     if observed is None:
         return model.names
     return [str(o) for o in (observed if isinstance(observed, list) else [observed])]
 
 
-def _excitation(study):
+def excitation_of(study):
     """The only parameter that stands in the frequencies of the loads."""
     found = set()
     parts = study.raw.get("force", []) + study.raw.get("distributed_force", [])

@@ -99,7 +99,8 @@ def _extrapolated(starts, changes):
 
 
 def march(model, samples=240, most_periods=400, settled=1e-9):
-    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, and the fundamental.
+    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, the friction work
+    of each slider over a period, and the fundamental.
 
     Structures without stops have one (but for what sliders that never slip remember), so that the march may be cut short
     by extrapolation: what it ends with repeats all the same.
@@ -141,7 +142,7 @@ def march(model, samples=240, most_periods=400, settled=1e-9):
         raise Unreadable("the march does not settle")
     if not model.stops:
         put(after)
-    begin = flow.t
+    begin, slid = flow.t, list(flow.slid)
     rows = {"q": [], "v": [], "force": [], "slip": []}
     for j in range(samples):
         flow.advance(begin + period * (j + 1) / samples)
@@ -150,4 +151,5 @@ def march(model, samples=240, most_periods=400, settled=1e-9):
         rows["v"].append(v)
         rows["force"].append([flow.slider_force(i) for i in range(len(model.sliders))])
         rows["slip"].append([flow.slip(i) for i in range(len(model.sliders))])
+    rows["slid"] = [after - before for after, before in zip(flow.slid, slid)]
     return {key: numpy.array(value) for key, value in rows.items()}, fundamental, flow
