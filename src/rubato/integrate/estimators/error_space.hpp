@@ -22,6 +22,8 @@ class ErrorSpace {
   virtual double displacement(const system::State& state) = 0;
   /// Size that errors are measured by even where nothing has moved yet [m sqrt(kg)].
   virtual double least_size() { return 0.0; }
+  /// What rounding and Newton's method leave of the displacement of a step [m sqrt(kg)]: less is no error of the step.
+  virtual double round_off() const { return 0.0; }
   /// Size that a state promises [m sqrt(kg)]; 0 where only what has moved counts.
   virtual double promised_size(const ResponseScales& scales) = 0;
   virtual ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) = 0;

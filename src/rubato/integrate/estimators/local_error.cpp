@@ -42,10 +42,12 @@ class LocalErrorEstimator final : public Estimator {
     now_.squared = now_.jump.dot(now_.product);
     now_.fourth = -1.0;
     is_contact_ = space_->touches(from) || space_->touches(to);
+    const bool is_round_off = h * h * std::sqrt(now_.squared) <= space_->round_off();
     if (c_.order == 1) {
       now_.third = now_.squared / (h * h);
       const double often = scales_.memory_of(now_.jump, now_.squared, h) / h;
-      return std::fmax(std::fmax(of_the_step(to, h), of_speed(to, h)) * often, of_swing(to, h));
+      const double error = std::fmax(std::fmax(of_the_step(to, h), of_speed(to, h)) * often, of_swing(to, h));
+      return is_round_off ? 0.0 : error;
     }
     slow_.look(now_.jump, h, std::cbrt(2.0 / (strength_ * h * h * scales_.memory())));
     now_.third = space_->squared(slow_.value());
@@ -53,7 +55,8 @@ class LocalErrorEstimator final : public Estimator {
     const double once = of_the_step(to, h);
     // What a contact leaves is not a vibration that will be out of phase: its few steps share a part of the tolerance.
     const double event = is_contact_ ? once * steps_of_a_contact : once;
-    return std::fmin(once * often, std::fmax(event, of_what_lasts(to, h) * often));
+    const double error = std::fmin(once * often, std::fmax(event, of_what_lasts(to, h) * often));
+    return is_round_off ? 0.0 : error;
   }
 
   void accept(const system::State& to) override {

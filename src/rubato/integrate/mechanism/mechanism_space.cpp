@@ -18,6 +18,7 @@ class MechanismSpace final : public ErrorSpace {
         start_(start.q),
         extent_(extent_of(mechanism)),
         least_(integrate::least_size(mechanism, tolerance)),
+        round_off_(std::min(1e-12, 1e-5 * tolerance) * extent_),
         equations_(mechanism),
         product_(mechanism.size()),
         travel_(mechanism.size()),
@@ -35,6 +36,8 @@ class MechanismSpace final : public ErrorSpace {
     return norm(travel_);
   }
   double least_size() override { return least_; }
+  /// A hundredth of what Newton's method may leave, and little beside what the tolerance allows a march.
+  double round_off() const override { return round_off_; }
 
   bool turns_freely() const override { return true; }
   bool has_stops() const override { return false; }
@@ -78,7 +81,7 @@ class MechanismSpace final : public ErrorSpace {
 
   const system::Mechanism& mechanism_;
   Vector start_;
-  double extent_, least_;
+  double extent_, least_, round_off_;
   system::MechanismEquations equations_;
   Vector product_, travel_;
   system::State moved_;
