@@ -149,6 +149,21 @@ TEST(Peaks, AreFoundThoughSomePointsHaveNoValue) {
   EXPECT_TRUE(find_peaks([](double, Vector&) { return false; }, {1.0, 5.0, 17, {}}).empty());
 }
 
+// A resonance without a value around its top, three times as high as the other: the lower one was the only peak.
+TEST(Peaks, WhoseTopHasNoValueAreTheBestThatHasOne) {
+  const Oscillator high{2.0, 0.01}, low{4.0, 0.05};
+  const Curves holes = [&](double x, Vector& values) {
+    values.setConstant(1, high(x) + low(x));
+    return !(x > 1.93 && x < 2.07);
+  };
+  const auto peaks = find_peaks(holes, {1.0, 5.0, 41, {}});
+  ASSERT_EQ(peaks.size(), 2u);
+  EXPECT_FALSE(peaks[0].is_closed);
+  EXPECT_NEAR(peaks[0].at, 2.0, 0.11);
+  EXPECT_GE(peaks[0].value, high(1.9));
+  EXPECT_TRUE(peaks[1].is_closed);
+}
+
 TEST(Peaks, AreFollowedToWhatTheyHaveBecome) {
   const Oscillator before{3.0, 0.05}, after{3.05, 0.05};
   const PeakRange range{1.0, 5.0, 17, {}};

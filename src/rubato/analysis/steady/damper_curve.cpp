@@ -181,7 +181,8 @@ class Warnings {
                                      values_text(impossible.count),
                                      family_ ? ": " + scan_of(impossible.first).reason : ""));
     if (const Tally& lost = counts_.of(PointStatus::not_converged); lost.count > 0.0)
-      warnings.push_back(fmt::format("at {} nothing converged ({})", place_of(lost.first), values_text(lost.count)));
+      warnings.push_back(fmt::format("at {} the highest response did not converge ({})", place_of(lost.first),
+                                     values_text(lost.count)));
     if (counts_.unconverged_samples > 0.0)
       warnings.push_back(fmt::format("{:.0f} of {:.0f} points solved did not converge: a peak may have been missed",
                                      counts_.unconverged_samples, counts_.solves));

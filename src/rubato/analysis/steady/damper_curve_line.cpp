@@ -123,6 +123,9 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
   } else if (!value.peaks.empty()) {
     value.response = family.response_at(parameter, value.peaks.front().at);
     value.status = point_status(value.response.status);
+    // Where points beside the highest do not converge it is the best found, and no peak.
+    if (value.status == PointStatus::converged && !value.peaks.front().is_closed)
+      value.status = PointStatus::not_converged;
   } else if (count(PointStatus::drifting) > 0) {
     value.status = PointStatus::drifting;
   } else if (count(PointStatus::impossible) > 0) {

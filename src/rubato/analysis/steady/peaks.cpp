@@ -90,15 +90,16 @@ class Search {
     return std::nullopt;  // it goes to and fro over a corner
   }
 
-  std::optional<Peak> climb(Bracket bracket) {
+  Peak climb(Bracket bracket) {
     const double low = bracket.low, high = bracket.high;
-    if (!narrow(bracket)) return std::nullopt;
+    const auto open = [&] { return Peak{curve_, bracket.middle, bracket.at_middle, NAN, Peak::Kind::interior, false}; };
+    if (!narrow(bracket)) return open();
     // What lies lower, beyond round-off, is the top of another bend.
     const double least = bracket.at_middle - round_off * std::abs(bracket.at_middle);
-    if (auto peak = finish(bracket.middle, low, high); peak && peak->value >= least) return peak;
+    if (auto peak = finish(bracket.middle, low, high); peak && peak->value >= least) return *peak;
     // No curvature to trust: a corner of the curve. It is where the bracket closes.
     for (int i = 0; i < 5; ++i)
-      if (!narrow(bracket)) return std::nullopt;
+      if (!narrow(bracket)) return open();
     return Peak{curve_, bracket.middle, bracket.at_middle, NAN, Peak::Kind::interior};
   }
 
@@ -220,9 +221,7 @@ std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
       const bool rises = i == 0 || y[i][c] > y[i - 1][c], falls = i == last || y[i][c] >= y[i + 1][c];
       if (!rises || !falls) continue;
       if (i > 0 && i < last) {
-        if (const auto peak =
-                Search(curves, range, c).climb({x[i - 1], x[i], x[i + 1], y[i - 1][c], y[i][c], y[i + 1][c]}))
-          peaks.push_back(*peak);
+        peaks.push_back(Search(curves, range, c).climb({x[i - 1], x[i], x[i + 1], y[i - 1][c], y[i][c], y[i + 1][c]}));
         continue;
       }
       // At an end: a maximum between it and its neighbour has a slope that says so.
@@ -238,7 +237,7 @@ std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
         Bracket bracket{std::min(a, b), a + inwards * h,
                         std::max(a, b), i == 0 ? y[i][c] : y[other][c],
                         near,           i == 0 ? y[other][c] : y[i][c]};
-        if (const auto inside = search.climb(bracket)) peak = *inside;
+        peak = search.climb(bracket);
       }
       peaks.push_back(peak);
     }

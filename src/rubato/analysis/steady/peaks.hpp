@@ -18,6 +18,7 @@ struct Peak {
   double at = 0.0, value = 0.0;
   double slope = 0.0;  ///< of the curve there: round-off where it is interior, NaN at a corner
   Kind kind = Kind::interior;
+  bool is_closed = true;  ///< false: places beside it have no value, and the curve may be higher there
 };
 
 /// Where peaks are looked for.
@@ -37,7 +38,8 @@ std::vector<double> find_extremes(const Curves& curves, const PeakRange& range, 
 
 /// All local maxima between the samples, each where its slope vanishes: bracketed by the samples, approached by
 /// parabolas (Brent 1973), and finished by Newton's method on central differences of 3e-6 x, which place the maximum of
-/// curves exact to 1e-13 within 1e-9 x. The highest first.
+/// curves exact to 1e-13 within 1e-9 x. Where points on the way have no value the best that has one stands for the
+/// maximum, which is not closed. The highest first.
 std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range);
 
 /// The maximum that a known one has become after a small change of the curves; nothing if it is gone.
