@@ -97,7 +97,7 @@ def _row(study, responses, table, i, title):
     for coordinate, amplitude in amplitudes.items():
         for unit in ("amplitude [m]", "angle_amplitude [rad]"):
             if table.has(f"{coordinate}.{unit}"):
-                yield f"{title} {coordinate}.{unit}", abs(table.column(f"{coordinate}.{unit}")[i] - amplitude) / size, AMPLITUDE
+                yield f"{title} {coordinate}.{unit}", abs(table.column(f"{coordinate}.{unit}")[i] - amplitude) / max(size, 1e-300), AMPLITUDE
     for slider, work in zip(names, works):
         if table.has(f"{slider}.dissipated [J]"):
             told = table.column(f"{slider}.dissipated [J]")[i]

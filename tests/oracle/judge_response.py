@@ -2,6 +2,7 @@
 
 import numpy
 
+import judge_waveforms
 import steady
 from structure.model import read_model
 from study import Unreadable
@@ -94,6 +95,7 @@ def frequency_response(study, model, analysis, table, pairs):
                 if table.has(header) and abs(first) > 1e-6 * size:
                     turned = numpy.exp(1j * table.column(header)[i]) - first / abs(first)
                     checks.append((f"row {i} {header}", abs(turned) * abs(first) / size, 5 * allowed))
+    checks += judge_waveforms.checks(study, analysis, table, parameter, max(1e-7, 4 * asked if solver != "periodic" else 0.0))
     checks += _linear_limits(study, model, analysis, table, parameter, in_hertz)
     if not checks:
         return Verdict(name, "frequency_response", "failed" if told else "skipped", f"no row to compare {told[:1]}")

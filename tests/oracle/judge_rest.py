@@ -21,6 +21,14 @@ def static(study, model, analysis, table, pairs):
         header = columns_of(model, coordinate)[0]
         if table.has(header):
             checks.append((header, abs(table.column(header)[0] - state.q[i]) * weights[i] / size, allowed))
+    for text in analysis.get("observe", []) if isinstance(analysis.get("observe"), list) else []:
+        if " - " in str(text) and table.has(f"{text}.position [m]"):
+            whole = max(numpy.max(numpy.abs(state.q)), 1e-300)
+            checks.append((text, abs(table.column(f"{text}.position [m]")[0] - model.row(text) @ state.q) / whole, 10 * allowed))
+    if "observe" in analysis:
+        named = {str(o) for o in (analysis["observe"] if isinstance(analysis["observe"], list) else [analysis["observe"]])}
+        told = {n for n in model.names if table.has(columns_of(model, n)[0])}
+        checks.append((f"columns of {told}, not of {named}", float(told != named & set(model.names)), 0.5))
     for i, slider in enumerate(model.sliders):
         for header in (f"{slider.name}.force [N]", f"{slider.name}.moment [N m]"):
             if table.has(header):

@@ -13,7 +13,8 @@ import tomllib
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import compare  # noqa: E402
-from generate import generate  # noqa: E402
+import generate  # noqa: E402
+import generate_more  # noqa: E402
 
 
 def wanted(words):
@@ -94,7 +95,7 @@ def main():
             name = seed if isinstance(seed, int) else pathlib.Path(seed).stem
             folder = pathlib.Path(options.keep) / str(name) if options.keep else pathlib.Path(scratch)
             if isinstance(seed, int):
-                path, kind = generate(seed, folder)
+                path, kind = (generate_more if seed >= generate_more.FIRST else generate).generate(seed, folder)
             else:
                 path, kind = laid(seed, folder), "file"
             told = []
