@@ -42,9 +42,14 @@ class Combination:
 
     @property
     def has_inertia_jump(self):
-        """The estimator whose tolerance is one of its source: what the judge says of it needs one tolerance more."""
-        return not self.has_equal_steps and (self.stepping[1] == "inertia_jump"
-                                             or self.stepping == ("cardona_cassano", None))
+        """The estimator whose tolerance is one of its source, which methods of second order have by default with
+        `cardona_cassano`: the errors follow its steps at tolerances below those of the others only."""
+        is_default = self.stepping == ("cardona_cassano", None) and self.order == 2
+        return not self.has_equal_steps and (self.stepping[1] == "inertia_jump" or is_default)
+
+    @property
+    def has_stability_limit(self):
+        return self.method in ('"central_difference"', '"fox_goodwin"', '"linear_acceleration"')
 
     def rungs(self):
         """What the ladder varies: steps [s] of equal steps, tolerances of automatic ones, nothing of `exact`."""
@@ -52,8 +57,7 @@ class Combination:
             return [None]
         if self.has_equal_steps:
             return [self.model.step / 2**k for k in range(RUNGS)]
-        tolerances = TOLERANCES[min(self.order or 2, 3)]
-        return [*tolerances, tolerances[-1]**2 / tolerances[-2]] if self.has_inertia_jump else list(tolerances)
+        return list(TOLERANCES[min(self.order or 2, 3)]) + ([1e-6, 1e-7] if self.has_inertia_jump else [])
 
     def analysis(self, name, rung):
         model = self.model

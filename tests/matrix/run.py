@@ -11,13 +11,15 @@ Right means:
   proportional to the cube of the step, and not of the result: there the number of steps grows with three quarters of the
   power -1/3 of the tolerance that theory gives, and with it the error falls with three quarters of the method's order
   from the last but one tolerance to the last (at loose ones a method with damping of its own loses fast parts of the motion
-  whole, and no more can be lost). This goes for the tolerances that choose the steps; of a loose one the longest may do.
+  whole, and no more can be lost). This goes for the tolerances that choose the steps; of a loose one the longest may do,
+  a fiftieth of the run or what the stability of an explicit method allows.
 A run that ends with a message is wrong too, unless `known_ends.txt` names it.
 Errors are those of positions, in each unit relative to the largest value of the reference, over all rows; of mechanisms
-to no less than a hundredth of a metre and a radian, by which their tolerance is measured while they have come less far. The
-reference of a model is another route: the exact flow, or a march at a tolerance far below. Rows at times of their own (`output.every`
-of steps that choose themselves) are compared with cubics through the rows of the reference: the last and ten others, since
-at one time alone an error may vanish by chance. Across transitions, where cubics err, the last is compared alone.
+to no less than a hundredth of a metre and a radian, by which their tolerance is measured while they have come less far.
+The reference of a model is another route: the exact flow, or a march at a tolerance far below. Rows at times of their
+own (`output.every` of steps that choose themselves) are compared with cubics through the rows of the reference: the last
+and ten others, since at one time alone an error may vanish by chance. Across transitions, where cubics err, the last is
+compared alone.
 """
 import argparse
 import bisect
@@ -123,14 +125,19 @@ def largest_error(found, expected, sizes):
     return max(error / sizes[unit] for unit, error in errors.items())
 
 
-def steps_chosen(path, longest):
-    """How many steps a tolerance chose; None where a tenth of the run is passed with the longest that there may be."""
+def steps_taken(path):
     with open(path) as file:
         rows = csv.reader(file)
         header = next(rows)
         step, reason = header.index("step [s]"), header.index("reason")
-        steps = [float(row[step]) for row in rows if row[reason] in ("accepted", "event")]
-    return len(steps) if sum(h for h in steps if h > 0.99 * longest) < 0.1 * sum(steps) else None
+        return [float(row[step]) for row in rows if row[reason] in ("accepted", "event")]
+
+
+def steps_chosen(rungs, longest, has_stability_limit):
+    """How many steps each tolerance chose; None where a tenth of the run is passed with the longest that there may be."""
+    if has_stability_limit and rungs:
+        longest = min(longest, max(rungs[0]))
+    return [len(steps) if sum(h for h in steps if h > 0.99 * longest) < 0.1 * sum(steps) else None for steps in rungs]
 
 
 def follows(errors, tolerances, numbers, order):
@@ -226,7 +233,7 @@ class Matrix:
             shutil.rmtree(folder)
 
     def judge(self, combination, index, results, failures, reference, sizes, floor):
-        errors, numbers = [], []
+        errors, rungs = [], []
         for k in range(len(combination.rungs())):
             name = f"c{index}-{k}"
             path = results / f"{name}.csv"
@@ -242,8 +249,9 @@ class Matrix:
                 return
             errors.append(error)
             steps = results / f"{name}.steps.csv"
-            is_ruled = combination.has_inertia_jump and steps.exists()
-            numbers.append(steps_chosen(steps, combination.model.duration / 50) if is_ruled else None)
+            if combination.has_inertia_jump and steps.exists():
+                rungs.append(steps_taken(steps))
+        numbers = steps_chosen(rungs, combination.model.duration / 50, combination.has_stability_limit)
         line = judge(combination, errors, floor, numbers)
         (self.wrong if line else self.right).append((combination, line or "right"))
 
