@@ -53,7 +53,8 @@ Marched run(const system::LocallyNonlinear& system, const std::string& name, dou
             double end) {
   const Method method = make_method(name);
   const auto stepper = make_stepper(method, system);
-  const auto estimator = make_estimator(default_estimator(method, tolerance), method, system, *stepper, end);
+  const auto estimator =
+      make_estimator(default_estimator(method, tolerance, system.stop_count() > 0), method, system, *stepper, end);
   StepPlan plan;
   plan.locate_events = locate;
   plan.largest = end / 50.0;

@@ -55,7 +55,8 @@ struct Passage {
 Passage run(const system::LocallyNonlinear& system, const std::string& name, double tolerance, double end) {
   const Method method = make_method(name);
   const auto stepper = make_stepper(method, system);
-  const auto estimator = make_estimator(default_estimator(method, tolerance), method, system, *stepper, end);
+  const auto estimator =
+      make_estimator(default_estimator(method, tolerance, system.stop_count() > 0), method, system, *stepper, end);
   StepPlan plan;
   plan.locate_events = true;
   plan.largest = end / 50.0;
@@ -108,8 +109,8 @@ TEST_P(Impact, BetweenTwoStopsIsPeriodic) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Impact,
-                         ::testing::Values("generalized_alpha", "hht", "average_acceleration", "bogacki_shampine",
-                                           "dormand_prince"),
+                         ::testing::Values("generalized_alpha", "hht", "average_acceleration", "wilson_theta",
+                                           "bogacki_shampine", "dormand_prince"),
                          [](const auto& info) { return info.param; });
 
 // A contact of a millisecond in a march of a quarter of a second: far below the displacements that the tolerance is
@@ -120,7 +121,7 @@ TEST(HardStop, ReboundsWithinTheToleranceHoweverLooseItIs) {
     const double c = 2.0 * share * std::sqrt(hard * m), d = c / (2.0 * m), w = std::sqrt(hard / m - d * d);
     const double contact = (std::numbers::pi - std::atan(2.0 * d * w / (w * w - d * d))) / w;
     const double rebound = v0 * std::exp(-d * contact) * (std::cos(w * contact) - d / w * std::sin(w * contact));
-    for (const char* method : {"generalized_alpha", "hht", "dormand_prince"})
+    for (const char* method : {"generalized_alpha", "hht", "wilson_theta", "dormand_prince"})
       for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
         const Passage passage = run(flying_mass(c, false, hard), method, tolerance, end);
         EXPECT_NEAR(passage.state.v[0], rebound, 3.0 * tolerance * v0) << method << " " << share << " " << tolerance;
@@ -188,6 +189,15 @@ TEST(RattlingChain, IsTheSameWhicheverMethodLocatesItsTransitions) {
     // A kink passed within a step h errs by the jump of the rate of force, some 100 N/s, times h^2: 1e-6 in all.
     EXPECT_LT(difference(fine.state, state), 2e-6);
   }
+}
+
+// Wilson-theta and linear acceleration: the force at t + theta h is of a contact that a step which ends there has not
+// met.
+TEST(WilsonTheta, ComparesNoTwoSolutionsWhereThereAreStops) {
+  const auto system = flying_mass(12.0);
+  const Method method = make_method("wilson_theta");
+  const auto stepper = make_stepper(method, system);
+  EXPECT_THROW((void)make_estimator(Embedded{1e-3}, method, system, *stepper, 0.25), InvalidInput);
 }
 
 // A closed stop is a spring like others: omega h = 2.

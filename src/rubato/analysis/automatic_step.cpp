@@ -35,7 +35,7 @@ integrate::EstimatorKind estimator_of(const model::StepDescription& description,
                          "step: \"reference\" and \"as_printed\" belong to the estimator inertia_jump");
   if (description.estimator == "local_error") return integrate::LocalError{tolerance};
   if (description.estimator == "embedded") return integrate::Embedded{tolerance};
-  return integrate::default_estimator(method, tolerance);
+  return integrate::default_estimator(method, tolerance, system.stop_count() > 0);
 }
 
 /// Of the stable step. At the limit itself the two eigenvalues of an undamped mode meet at -1, and its velocity grows

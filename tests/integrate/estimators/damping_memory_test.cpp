@@ -86,7 +86,8 @@ double error_over_tolerance(const system::LocallyNonlinear& system, const char* 
   testing::LargestError<std::function<Vector(double)>> errors(system, exact);
   const Method chosen = make_method(method);
   const auto stepper = make_stepper(chosen, system);
-  const auto estimator = make_estimator(default_estimator(chosen, tolerance), chosen, system, *stepper, end);
+  const auto estimator =
+      make_estimator(default_estimator(chosen, tolerance, system.stop_count() > 0), chosen, system, *stepper, end);
   StepPlan plan;
   plan.largest = end / 50.0;
   system::State state = consistent_start(system, system.start());

@@ -42,7 +42,8 @@ TEST(LocalError, IsMeasuredByWhatAShortPulseBringsAndNotByItsForce) {
       const auto system = oscillator_under(width);
       const Method method = make_method("generalized_alpha");
       const auto stepper = make_stepper(method, system);
-      const auto estimator = make_estimator(default_estimator(method, tolerance), method, system, *stepper, end);
+      const auto estimator =
+          make_estimator(default_estimator(method, tolerance, system.stop_count() > 0), method, system, *stepper, end);
       StepPlan plan;
       plan.largest = 1.0;
       struct Largest final : Observer {
@@ -72,7 +73,8 @@ TEST(LocalError, IsNotMeasuredByTheStaticDisplacementOfAFastLoad) {
   const system::LocallyNonlinear system(std::move(parts));
   const Method method = make_method("generalized_alpha");
   const auto stepper = make_stepper(method, system);
-  const auto estimator = make_estimator(default_estimator(method, 1e-2), method, system, *stepper, last);
+  const auto estimator =
+      make_estimator(default_estimator(method, 1e-2, system.stop_count() > 0), method, system, *stepper, last);
   system::State state = consistent_start(system, system.start());
   StepPlan plan;
   plan.largest = 1.0;

@@ -132,7 +132,10 @@ class PairEstimator final : public EmbeddedEstimator {
 
 /// Wilson-theta carries A = q'' + theta (theta - 1)/2 h^2 q'''', so that its velocity errs by (1/12 + theta (theta -
 /// 1)/2) h^3 q'''' a step. From the same state linear acceleration, which meets equilibrium at the end of the step,
-/// differs by theta (theta - 1)/4 h^3 q''''.
+/// differs by theta (theta - 1)/4 h^3 q''''. Where a step ends as a stop closes, their difference is no such error: the
+/// force at t + theta h is of a contact that the step has not met, and its error passes for a small one (a hard stop
+/// with 0.3 of critical damping threw a mass back with 0.13 m/s instead of 0.36 at any tolerance) or for one that no
+/// shortening lowers. So it is refused there.
 class WilsonEstimator final : public EmbeddedEstimator {
  public:
   WilsonEstimator(double tolerance, double theta, const system::LocallyNonlinear& system, double duration,
@@ -179,8 +182,12 @@ bool can_embed(const Method& method) {
 std::unique_ptr<Estimator> make_embedded(const Embedded& kind, const Method& method,
                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration,
                                          const std::vector<numerics::StepBound>& bounds) {
-  if (const auto* wilson = std::get_if<WilsonTheta>(&method.formula))
-    return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration, bounds);
+  const auto* wilson = std::get_if<WilsonTheta>(&method.formula);
+  if (wilson && system.stop_count() > 0)
+    throw InvalidInput(
+        "the estimator embedded of wilson_theta compares two solutions of which one looks beyond the end of a step, at "
+        "stops that the motion has not met; take the estimator local_error");
+  if (wilson) return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration, bounds);
   if (!can_embed(method))
     throw InvalidInput(fmt::format(
         "the estimator embedded compares two solutions of a step, and {} has one; take {}", method.name,

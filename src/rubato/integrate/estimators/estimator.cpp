@@ -68,8 +68,9 @@ bool is_of_second_order(const Method& method) {
   return !alpha || error_constants(*alpha).order == 2;
 }
 
-EstimatorKind default_estimator(const Method& method, double tolerance) {
+EstimatorKind default_estimator(const Method& method, double tolerance, bool has_stops) {
   if (std::holds_alternative<GeneralizedAlpha>(method.formula)) return LocalError{tolerance};
+  if (std::holds_alternative<WilsonTheta>(method.formula) && has_stops) return LocalError{tolerance};
   return Embedded{tolerance};
 }
 

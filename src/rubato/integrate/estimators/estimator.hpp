@@ -113,8 +113,9 @@ std::unique_ptr<Estimator> make_estimator(const EstimatorKind& kind, const Gener
 /// carry no acceleration: true, others refuse them.
 bool is_of_second_order(const Method& method);
 
-/// The estimator of a method unless another is asked for: `embedded` for pairs and Wilson-theta, else `local_error`.
-EstimatorKind default_estimator(const Method& method, double tolerance);
+/// The estimator of a method unless another is asked for: `embedded` for pairs, and for Wilson-theta where no stop is,
+/// else `local_error`.
+EstimatorKind default_estimator(const Method& method, double tolerance, bool has_stops);
 
 /// "inertia_jump", "local_error" or "embedded"
 std::string name_of(const EstimatorKind& kind);
