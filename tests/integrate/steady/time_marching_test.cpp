@@ -160,6 +160,24 @@ TEST(TimeMarching, SaysThatAnUndampedTransientOfHalfTheFrequencyIsSubharmonic) {
   }
 }
 
+// m = k = 1, c = 0.1, a stop of 100 k without gap: the motion with the period of the load, of 0.1010, is unstable, and
+// was called converged. The transient under an error of 1e-6 repeats after two periods with 1.56985, which hit the stop
+// once.
+TEST(TimeMarching, FindsTheMotionThatLastsBetweenStopsAndNoUnstableOne) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+  parts.damping = testing::sparse(0.1 * Matrix::Identity(1, 1));
+  parts.stops = {{"wall", 0, ground, 0.0, 100.0, 0.0}};
+  parts.loads = system::Loads({harmonic(0, 1.0, 3.6)});
+  parts.coordinates = {"mass"};
+  const system::LocallyNonlinear system(std::move(parts));
+  const auto response =
+      response_of(system, with_method("average_acceleration", 1e-3), observing({0}), SteadyStart::unloaded);
+  EXPECT_EQ(response.status, SteadyStatus::subharmonic);
+  EXPECT_EQ(response.periods, 2);
+  EXPECT_NEAR(response.amplitude[0], 1.56985, 2e-3 * 1.56985);
+}
+
 TEST(TimeMarching, SaysThatAnUndampedTransientWithoutCommonPeriodIsQuasiPeriodic) {
   system::LocallyNonlinear::Parts parts;
   parts.mass = testing::sparse(Matrix::Identity(1, 1));

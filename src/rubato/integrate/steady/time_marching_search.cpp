@@ -50,7 +50,8 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excita
   search.tolerance = options_.periodicity;
   search.max_periods = options_.max_periods;
   search.rigid = engine.rigid;
-  const bool extrapolates = options_.extrapolates && start != SteadyStart::rest;
+  // Between stops a motion that repeats may be unstable, and an extrapolation finds it as readily as one that lasts.
+  const bool extrapolates = options_.extrapolates && start != SteadyStart::rest && system_.stop_count() == 0;
   const SteadyRequest& request = is_full ? request_ : amplitudes_;
   engine.records.resize(excitations.size());
   for (SteadyResponse& response : responses) response.iterations = 0;
