@@ -98,17 +98,33 @@ def _extrapolated(starts, changes):
     return x + f - (dx + df) @ gamma
 
 
-def march(model, samples=240, most_periods=400, settled=1e-9):
-    """The periodic motion from rest: arrays [samples x n] of q and v, [samples x m] of forces, the friction work
-    of each slider over a period, and the fundamental.
+def other_motions(model):
+    """Between stops several motions may repeat, and sliders that stick between them hold any of a continuum: those to which
+    the linear responses lead, without and with the sliders' springs."""
+    for start in _linear_starts(model):
+        yield march(model, start=start)[0]
+
+
+def _linear_starts(model):
+    """q and v of the linear responses."""
+    for stiffness in (model.K, model.stuck_stiffness()) if model.sliders else (model.K,):
+        fundamental, answers, condition = linear(model, stiffness)
+        if condition < 1e12:
+            yield (sum(numpy.real(x) for x in answers.values()),
+                   sum(numpy.real(1j * order * fundamental * x) for order, x in answers.items()))
+
+
+def march(model, samples=240, most_periods=400, settled=1e-9, start=None):
+    """The periodic motion from rest, or from q and v: arrays [samples x n] of q and v, [samples x m] of forces, the
+    friction work of each slider over a period, and the fundamental.
 
     Structures without stops have one (but for what sliders that never slip remember), so that the march may be cut short
-    by extrapolation: what it ends with repeats all the same.
+    by extrapolation: what it ends with repeats all the same. Between stops there may be several (`other_motions`).
     """
     fundamental, _ = orders_of(model)
     period = 2 * math.pi / fundamental
-    flow = Flow(model, 0.0, most_periods * period, model.q0 * 0, model.v0 * 0, [0.0] * len(model.sliders),
-                most_strides=1e9)
+    q, v = start or (model.q0 * 0, model.v0 * 0)
+    flow = Flow(model, 0.0, most_periods * period, q, v, [0.0] * len(model.sliders), most_strides=1e9)
     stiffness = numpy.array([slider.stiffness for slider in model.sliders])
 
     def state():
