@@ -153,6 +153,13 @@ double quotient_error(const Structure& structure, const ComplexVector& x, Comple
   return 16.0 * unit * terms / std::abs(derivative);
 }
 
+/// A rigid motion that dampers brake has the root 0 beside -c/m: what is found of it is round-off, and set to 0.
+void take_root_at_zero(const Structure& structure, DampedMode& mode) {
+  if (!(std::abs(mode.eigenvalue) <= quotient_error(structure, mode.shape, mode.eigenvalue))) return;
+  mode.eigenvalue = 0.0;
+  mode.angular_frequency = mode.damping_ratio = 0.0;
+}
+
 /// Inverse iteration on the full matrices, whose pattern is analysed once.
 class Refinement {
  public:
@@ -259,13 +266,17 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
     }
     const std::vector<QuadraticMode> coupled = quadratic_modes(squares, coupling);
     result.has_converged = result.has_converged && !coupled.empty();
-    for (const QuadraticMode& mode : coupled)
+    for (const QuadraticMode& mode : coupled) {
       result.modes.push_back(complex_mode(mode.eigenvalue, shapes * mode.shape, mass));
+      take_root_at_zero(structure, result.modes.back());
+    }
   }
   sort_and_cut(result.modes, count);
   const bool is_complete = undamped.eigenvalues.size() == n;
   const bool leaves = !is_complete && leads_out(structure, undamped, modal);
-  const auto is_poor = [&](const DampedMode& mode) { return mode.is_complex && !(structure.defect(mode) <= accurate); };
+  const auto is_poor = [&](const DampedMode& mode) {
+    return mode.is_complex && mode.eigenvalue != 0.0 && !(structure.defect(mode) <= accurate);
+  };
   if (leaves || std::any_of(result.modes.begin(), result.modes.end(), is_poor)) {
     result.is_refined = true;
     Refinement refine(structure);
@@ -287,8 +298,10 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
     const Vector size = mode.shape.cwiseAbs();
     const double all = terms ? size.dot(*terms * size) : size.dot(stiffness.cwiseAbs() * size);
     const double energy = structure.energy(mode.eigenvalue, mode.shape);
-    mode.round_off = energy > 0.0 ? 2.0 * unit * all / energy * std::norm(mode.eigenvalue) : 2.0 * unit * all;
-    if (!(structure.defect(mode) <= acceptable)) result.has_converged = false;
+    const bool is_at_zero = mode.eigenvalue == 0.0;
+    mode.round_off =
+        energy > 0.0 && !is_at_zero ? 2.0 * unit * all / energy * std::norm(mode.eigenvalue) : 2.0 * unit * all;
+    if (!is_at_zero && !(structure.defect(mode) <= acceptable)) result.has_converged = false;
   }
   result.residual = std::max(result.residual, undamped.residual);
   return result;
