@@ -112,24 +112,22 @@ AutomaticStep automatic_step(const std::string& title, const model::StepDescript
 
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::Mechanism& mechanism) {
-  const auto is_rotation = [&](Index i) { return mechanism.model().is_rotation[static_cast<std::size_t>(i)] != 0; };
   std::vector<Observed> observed;
   if (!wanted)
-    for (Index i = 0; i < mechanism.size(); ++i)
-      observed.push_back({mechanism.coordinates()[static_cast<std::size_t>(i)], i, ground, is_rotation(i)});
+    observed = every_coordinate(mechanism);
   else
     for (const auto& one : *wanted) {
       const Index first = find(one.first, one.where, mechanism);
       if (one.second.empty()) {
-        observed.push_back({one.first, first, ground, is_rotation(first)});
+        observed.push_back({one.first, first, ground, mechanism.is_rotation(first)});
         continue;
       }
       const Index second = find(one.second, one.where, mechanism);
-      if (is_rotation(first) != is_rotation(second))
+      if (mechanism.is_rotation(first) != mechanism.is_rotation(second))
         throw InvalidInput(one.where, fmt::format("observe: \"{} - {}\" is the difference of a position [m] and a "
                                                   "rotation [rad]",
                                                   one.first, one.second));
-      observed.push_back({one.first + " - " + one.second, first, second, is_rotation(first)});
+      observed.push_back({one.first + " - " + one.second, first, second, mechanism.is_rotation(first)});
     }
   std::stable_partition(observed.begin(), observed.end(), [](const Observed& one) { return !one.is_rotation; });
   return observed;

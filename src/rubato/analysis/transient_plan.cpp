@@ -172,14 +172,20 @@ Observed observed_of(const model::ObservationDescription& description, const sys
   return {description.first + " - " + description.second, first, second, turns(first)};
 }
 
+std::vector<Observed> every_coordinate(const system::System& system) {
+  std::vector<Observed> observed;
+  for (Index i = 0; i < system.size(); ++i)
+    observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+  return observed;
+}
+
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::LocallyNonlinear& system, Supports supports) {
   std::vector<Observed> observed;
   if (wanted) {
     for (const auto& observation : *wanted) observed.push_back(observed_of(observation, system, supports));
   } else {
-    for (Index i = 0; i < system.size(); ++i)
-      observed.push_back({system.coordinates()[static_cast<std::size_t>(i)], i, ground, system.is_rotation(i)});
+    observed = every_coordinate(system);
     for (Index i = 0; supports == Supports::observed && system.supports() && i < system.supports()->size(); ++i)
       observed.push_back({system.supports()->names()[static_cast<std::size_t>(i)], system.size() + i, ground,
                           system.supports()->is_rotation(i)});

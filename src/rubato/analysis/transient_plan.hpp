@@ -57,6 +57,9 @@ enum class Supports { left_out, observed };
 Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system,
                      Supports supports = Supports::left_out);
 
+/// Every coordinate of a system, in its order.
+std::vector<Observed> every_coordinate(const system::System& system);
+
 /// What is asked for, or every coordinate: displacements, then rotations.
 std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
                                       const system::LocallyNonlinear& system, Supports supports = Supports::left_out);

@@ -5,6 +5,7 @@
 #include <rubato/system/loads.hpp>
 #include <rubato/system/moving_supports.hpp>
 #include <rubato/system/state.hpp>
+#include <rubato/system/system.hpp>
 
 #include <memory>
 #include <optional>
@@ -22,7 +23,7 @@ namespace rubato::system {
 /// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m] e_first - e_second of
 /// each contact: the sliders, then the stops. Immutable; integrators keep what moves in a State and in their
 /// workspace.
-class LocallyNonlinear {
+class LocallyNonlinear final : public System {
  public:
   struct Parts {
     SparseMatrix mass, damping, stiffness;  ///< [n x n]
@@ -40,7 +41,7 @@ class LocallyNonlinear {
 
   explicit LocallyNonlinear(Parts parts);
 
-  Index size() const { return parts_.mass.rows(); }
+  Index size() const override { return parts_.mass.rows(); }
   Index slider_count() const { return static_cast<Index>(parts_.sliders.size()); }
   Index stop_count() const { return static_cast<Index>(parts_.stops.size()); }
   Index contact_count() const { return static_cast<Index>(contacts_.size()); }
@@ -56,12 +57,15 @@ class LocallyNonlinear {
   const std::vector<Ends>& contacts() const { return contacts_; }
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
-  const std::vector<std::string>& coordinates() const { return parts_.coordinates; }
+  const std::vector<std::string>& coordinates() const override { return parts_.coordinates; }
   const std::vector<model::Held>& held_forces() const { return parts_.held_forces; }
   const std::vector<model::Held>& held_displacements() const { return parts_.held_displacements; }
-  bool is_rotation(Index i) const {
+  bool is_rotation(Index i) const override {
     return !parts_.is_rotation.empty() && parts_.is_rotation[static_cast<std::size_t>(i)] != 0;
   }
+  bool is_flat() const override { return true; }
+  void retract(const Vector& q, const Vector& dq, Vector& out) const override { out = q + dq; }
+  void difference(const Vector& q, const Vector& to, Vector& dq) const override { dq = to - q; }
   double reference() const { return parts_.reference; }
   /// Null where none moves.
   const MovingSupports* supports() const { return parts_.supports ? &*parts_.supports : nullptr; }

@@ -93,6 +93,12 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   start_.stuck_at = Vector::Zero(static_cast<Index>(model_.frictions.size()));
 }
 
+double Mechanism::largest_turn() const {
+  // Beyond half a turn the shortest way to a rotation in space leads round the other side.
+  constexpr double below_half = 2.0;
+  return model_.dimension == 3 ? below_half : System::largest_turn();
+}
+
 void Mechanism::retract(const Vector& q, const Vector& dq, Vector& out) const {
   out = q;
   for (Index i = 0; i < dq.size(); ++i)

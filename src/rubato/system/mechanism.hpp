@@ -3,6 +3,7 @@
 #include <rubato/core/types.hpp>
 #include <rubato/model/mechanism.hpp>
 #include <rubato/system/state.hpp>
+#include <rubato/system/system.hpp>
 
 #include <array>
 #include <string>
@@ -18,18 +19,19 @@ namespace rubato::system {
 /// configuration. q holds all numbers of all nodes (three a node in the plane, seven in space, the ground first), those
 /// of fixed axes too, and behind them the angles of joints in space whose turns are counted. Immutable;
 /// MechanismEquations evaluates it, one a thread.
-class Mechanism {
+class Mechanism final : public System {
  public:
   /// Throws InvalidInput for a coordinate without mass.
   explicit Mechanism(model::Mechanism model);
 
-  Index size() const { return model_.size(); }                                 ///< n
+  Index size() const override { return model_.size(); }                        ///< n
   Index constraint_count() const { return static_cast<Index>(rows_.size()); }  ///< c
   Index configuration_size() const { return start_.q.size(); }
   const model::Mechanism& model() const { return model_; }
   const SparseMatrix& mass() const { return mass_; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
-  const std::vector<std::string>& coordinates() const { return model_.coordinates; }
+  const std::vector<std::string>& coordinates() const override { return model_.coordinates; }
+  bool is_rotation(Index i) const override { return model_.is_rotation[static_cast<std::size_t>(i)] != 0; }
   const std::vector<std::string>& rows() const { return rows_; }  ///< of constraints, "JOINT.x" [c]
   /// The first row of a joint, among the model's.
   Index first_row(int joint) const { return first_row_[static_cast<std::size_t>(joint)]; }
@@ -41,10 +43,12 @@ class Mechanism {
   /// Constant external force: weights [n] [N].
   const Vector& weight() const { return weight_; }
 
+  bool is_flat() const override { return false; }
+  double largest_turn() const override;
   /// The configuration after a motion dq [n] from q: q + dq, exponential map for rotations.
-  void retract(const Vector& q, const Vector& dq, Vector& out) const;
+  void retract(const Vector& q, const Vector& dq, Vector& out) const override;
   /// The dq that leads from q to `to` along one retraction.
-  void difference(const Vector& q, const Vector& to, Vector& dq) const;
+  void difference(const Vector& q, const Vector& to, Vector& dq) const override;
   /// The numbers of q that the tangent coordinates move, in space the rotation vectors [n] [m], [rad].
   void coordinate_values(const Vector& q, Vector& out) const;
   /// Turns a small motion in the tangent space at the end of `travel` into the change of `travel` that makes it:
