@@ -1,7 +1,8 @@
-#include <rubato/analysis/mechanism_interpolation.hpp>
 #include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
+#include <rubato/analysis/transient_observer.hpp>
+#include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 
 #include <fmt/format.h>
@@ -12,43 +13,35 @@
 namespace rubato::analysis {
 namespace {
 
-using OutputKind = model::OutputDescription::Kind;
-
-class MechanismObserver final : public integrate::Observer {
+class MechanismBooks final : public TransientBooks {
  public:
-  MechanismObserver(const TransientPlan& plan, const system::Mechanism& mechanism, MechanismRecorder& recorder,
-                    const integrate::MechanismTimeline& timeline, RunContext& context)
-      : plan_(plan),
+  MechanismBooks(const TransientPlan& plan, const system::Mechanism& mechanism, MechanismRecorder& recorder,
+                 const integrate::MechanismTimeline& timeline)
+      : keeps_energy_(plan.energy),
+        mechanism_(mechanism),
         recorder_(recorder),
         timeline_(timeline),
-        context_(context),
         ledger_(mechanism),
-        between_(mechanism, timeline.breakpoints(plan.start.t, plan.duration)),
         equations_(mechanism),
         drift_(mechanism.constraint_count()),
-        mechanism_(mechanism),
         way_(mechanism.size()),
         momentum_(mechanism.size()) {}
 
-  void start(const system::State& state) {
+  void start(const system::State& state) override {
     ledger_.start(state);
     from_ = state.q;
-    if (plan_.output == OutputKind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
-    record(state, state);
-    ++next_;
   }
 
-  bool accepted(const system::State& before, const system::State& after) override {
-    ++steps_;
-    last_recorded_ = false;
-    if (plan_.output == OutputKind::interval || plan_.output == OutputKind::times) record_between(before, after);
-    if (plan_.energy) ledger_.add_step(before, after, timeline_.impulsive_work());
-    if (plan_.output == OutputKind::every_step || (plan_.output == OutputKind::every && steps_ % plan_.every == 0))
-      record(after, after);
+  void book(const system::State& before, const system::State& after) override {
+    if (keeps_energy_) ledger_.add_step(before, after, timeline_.impulsive_work());
     note_drift(after);
     note_way(after);
-    if (steps_ % 64 == 0) context_.progress.advance(after.t);
-    return !context_.stop.load(std::memory_order_relaxed);
+  }
+
+  void record(const system::State& before, const system::State& now, bool is_balanced) override {
+    if (!keeps_energy_) return recorder_.record(now, nullptr, is_balanced);
+    const MechanismEnergy energy = ledger_.at(before, now, timeline_.impulsive_work());
+    recorder_.record(now, &energy, is_balanced);
   }
 
   /// Largest rate of the constraints at the ends of the steps [m/s], [rad/s].
@@ -56,19 +49,7 @@ class MechanismObserver final : public integrate::Observer {
   /// The longest way from where the run starts, in the mass norm [m sqrt(kg)].
   double largest_way() const { return largest_way_; }
 
-  void finish(const system::State& state) {
-    if (plan_.output == OutputKind::every && !last_recorded_ && steps_ > 0) record(state, state);
-    context_.progress.advance(state.t);
-  }
-
  private:
-  void record(const system::State& before, const system::State& now, bool is_balanced = false) {
-    last_recorded_ = true;
-    if (!plan_.energy) return recorder_.record(now, nullptr, is_balanced);
-    const MechanismEnergy energy = ledger_.at(before, now, timeline_.impulsive_work());
-    recorder_.record(now, &energy, is_balanced);
-  }
-
   void note_drift(const system::State& state) {
     if (drift_.size() == 0) return;
     equations_.go_to(state, model::Side::left);
@@ -83,40 +64,16 @@ class MechanismObserver final : public integrate::Observer {
     largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
   }
 
-  double next_time() const {
-    if (plan_.output == OutputKind::interval) return static_cast<double>(next_) * plan_.interval;
-    return next_ < static_cast<long>(plan_.times.size()) ? plan_.times[static_cast<std::size_t>(next_)] : HUGE_VAL;
-  }
-
-  void record_between(const system::State& before, const system::State& after) {
-    const double round_off = 1e-9 * (after.t - before.t);
-    between_.take(before, after);
-    for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
-      ++next_;
-      if (t >= after.t - round_off) {
-        record(before, after);
-        continue;
-      }
-      between_.at(t, state_);
-      record(before, state_, true);
-    }
-  }
-
-  const TransientPlan& plan_;
+  bool keeps_energy_;
+  const system::Mechanism& mechanism_;
   MechanismRecorder& recorder_;
   const integrate::MechanismTimeline& timeline_;
-  RunContext& context_;
   MechanismLedger ledger_;
-  MechanismInterpolation between_;
   system::MechanismEquations equations_;
   Vector drift_;
   double largest_drift_ = 0.0;
-  const system::Mechanism& mechanism_;
   Vector from_, way_, momentum_;
   double largest_way_ = 0.0;
-  system::State state_;
-  long steps_ = 0, next_ = 0;
-  bool last_recorded_ = false;
 };
 
 /// What the impact of a rigid lock took, or the spring of a damped stop still held as it let go.
@@ -202,7 +159,13 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   }
   MechanismMarch march(plan, mechanism);
   MechanismRecorder recorder(name, plan, mechanism, context.sink);
-  MechanismObserver observer(transient, mechanism, recorder, march.timeline(), context);
+  MechanismBooks books(transient, mechanism, recorder, march.timeline());
+  constexpr long steps_a_report = 64;
+  TransientObserver observer(transient, books,
+                             StepInterpolation(mechanism, integrate::make_balance(mechanism),
+                                               integrate::find_method(transient.method.name).order,
+                                               march.timeline().breakpoints(transient.start.t, transient.duration)),
+                             steps_a_report, context);
   context.progress.begin(name, transient.duration, "s of motion");
   observer.start(march.state());
   std::unique_ptr<StepRecorder> tries;
@@ -217,12 +180,12 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   RunReport run;
   run.statistics = statistics(report, state.t);
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
-  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", observer.largest_drift()));
+  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", books.largest_drift()));
   run.warnings = plan.warnings;
   if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
     run.warnings.push_back(warning);
   if (const std::string warning =
-          warning_of_small_motion(observer.largest_way(), march.error_size(), *transient.automatic, mechanism);
+          warning_of_small_motion(books.largest_way(), march.error_size(), *transient.automatic, mechanism);
       !warning.empty())
     run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)

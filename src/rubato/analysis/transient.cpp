@@ -1,5 +1,5 @@
-#include <rubato/analysis/interpolation.hpp>
 #include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/transient_observer.hpp>
 #include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
@@ -12,90 +12,27 @@
 namespace rubato::analysis {
 namespace {
 
-using Kind = model::OutputDescription::Kind;
-
-/// Books every accepted step, records those that are asked for, and hears of Ctrl-C.
-class TransientObserver final : public integrate::Observer {
+class StructureBooks final : public TransientBooks {
  public:
-  TransientObserver(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder,
-                    RunContext& context)
-      : plan_(plan),
-        recorder_(recorder),
-        context_(context),
-        ledger_(system),
-        interpolation_(system, integrate::find_method(plan.method.name).order),
-        between_(plan.start),
-        steps_a_report_(system.size() > 1000 ? 1 : 256) {}
+  StructureBooks(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder)
+      : keeps_energy_(plan.energy), recorder_(recorder), ledger_(system) {}
 
-  void start(const system::State& state) {
-    ledger_.start(state);
-    // Requested times may begin later than the run.
-    if (plan_.output == Kind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
-    record(state, state);
-    ++next_;
+  void start(const system::State& state) override { ledger_.start(state); }
+
+  void book(const system::State& before, const system::State& after) override {
+    if (keeps_energy_) ledger_.add_step(before, after);
   }
 
-  bool accepted(const system::State& before, const system::State& after) override {
-    ++steps_;
-    last_recorded_ = false;
-    if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
-    if (plan_.energy) ledger_.add_step(before, after);
-    if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
-      record(after, after);
-    if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
-    return !context_.stop.load(std::memory_order_relaxed);
+  void record(const system::State& before, const system::State& now, bool is_balanced) override {
+    if (!keeps_energy_) return recorder_.record(now, nullptr, is_balanced);
+    const Energy energy = ledger_.at(before, now);
+    recorder_.record(now, &energy, is_balanced);
   }
-
-  /// The state in which the march ended is worth keeping even between outputs.
-  void finish(const system::State& state) {
-    if (plan_.output == Kind::every && !last_recorded_ && steps_ > 0) record(state, state);
-    context_.progress.advance(progress(state));
-  }
-
-  long steps() const { return steps_; }
 
  private:
-  /// How many steps there will be is not known of automatic ones.
-  double progress(const system::State& state) const { return plan_.automatic ? state.t : static_cast<double>(steps_); }
-
-  void record(const system::State& before, const system::State& now, const Vector* acceleration = nullptr) {
-    if (plan_.energy) {
-      const Energy energy = ledger_.at(before, now);
-      recorder_.record(now, &energy, acceleration);
-    } else {
-      recorder_.record(now, nullptr, acceleration);
-    }
-    last_recorded_ = true;
-  }
-
-  double next_time() const {
-    if (plan_.output == Kind::interval) return static_cast<double>(next_) * plan_.interval;
-    return next_ < static_cast<long>(plan_.times.size()) ? plan_.times[static_cast<std::size_t>(next_)] : HUGE_VAL;
-  }
-
-  void record_between(const system::State& before, const system::State& after) {
-    const double round_off = 1e-9 * (after.t - before.t);
-    interpolation_.take(before, after);
-    for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
-      ++next_;
-      if (t >= after.t - round_off) {
-        record(before, after);
-        continue;
-      }
-      interpolation_.at(t, between_, between_acceleration_);
-      record(before, between_, &between_acceleration_);
-    }
-  }
-
-  const TransientPlan& plan_;
+  bool keeps_energy_;
   TransientRecorder& recorder_;
-  RunContext& context_;
   EnergyLedger ledger_;
-  StepInterpolation interpolation_;
-  system::State between_;
-  Vector between_acceleration_;
-  long steps_a_report_, steps_ = 0, next_ = 0;
-  bool last_recorded_ = false;
 };
 
 std::string missed_jumps(const integrate::LoadJumps& jumps) {
@@ -164,7 +101,12 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     return run_exact_transient(name, plan, system, context);
   const auto stepper = integrate::make_stepper(plan.method, system);
   TransientRecorder recorder(name, plan, system, context.sink);
-  TransientObserver observer(plan, system, recorder, context);
+  StructureBooks books(plan, system, recorder);
+  const long steps_a_report = system.size() > 1000 ? 1 : 256;
+  TransientObserver observer(
+      plan, books,
+      StepInterpolation(system, integrate::make_balance(system), integrate::find_method(plan.method.name).order),
+      steps_a_report, context);
   system::State state = integrate::consistent_start(system, plan.start);
   RunReport run;
   run.warnings = plan.warnings;

@@ -95,9 +95,9 @@ void TransientRecorder::append_supports(const system::State& state) {
       if (supports.is_rotation(i) == is_rotation) row_.push_back(reaction_[i]);
 }
 
-void TransientRecorder::record(const system::State& state, const Energy* energy, const Vector* acceleration) {
-  if (acceleration)
-    acceleration_ = *acceleration;
+void TransientRecorder::record(const system::State& state, const Energy* energy, bool is_balanced) {
+  if (is_balanced)
+    acceleration_ = state.acceleration;
   else
     equilibrium_(state, acceleration_);
   row_.clear();

@@ -18,9 +18,9 @@ class TransientRecorder {
   TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
                     results::Sink& sink);
 
-  /// @param energy        null without a ledger
-  /// @param acceleration  where it is not that of equilibrium at the state: between the ends of a step; may be null
-  void record(const system::State& state, const Energy* energy, const Vector* acceleration = nullptr);
+  /// @param energy  null without a ledger
+  /// @param is_balanced  the acceleration of the state is that to tell: between the ends of a step
+  void record(const system::State& state, const Energy* energy, bool is_balanced = false);
   bool keeps_energy() const { return energy_rows_ != nullptr; }
   long rows() const { return count_; }
 

@@ -1,0 +1,66 @@
+#include <rubato/analysis/transient_observer.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace rubato::analysis {
+
+using Kind = model::OutputDescription::Kind;
+
+TransientObserver::TransientObserver(const TransientPlan& plan, TransientBooks& books, StepInterpolation interpolation,
+                                     long steps_a_report, RunContext& context)
+    : plan_(plan),
+      books_(books),
+      interpolation_(std::move(interpolation)),
+      context_(context),
+      steps_a_report_(steps_a_report) {}
+
+void TransientObserver::start(const system::State& state) {
+  books_.start(state);
+  // Requested times may begin later than the run.
+  if (plan_.output == Kind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
+  record(state, state);
+  ++next_;
+}
+
+bool TransientObserver::accepted(const system::State& before, const system::State& after) {
+  ++steps_;
+  last_recorded_ = false;
+  if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
+  books_.book(before, after);
+  if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
+    record(after, after);
+  if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
+  return !context_.stop.load(std::memory_order_relaxed);
+}
+
+void TransientObserver::finish(const system::State& state) {
+  if (plan_.output == Kind::every && !last_recorded_ && steps_ > 0) record(state, state);
+  context_.progress.advance(progress(state));
+}
+
+void TransientObserver::record(const system::State& before, const system::State& now, bool is_balanced) {
+  books_.record(before, now, is_balanced);
+  last_recorded_ = true;
+}
+
+double TransientObserver::next_time() const {
+  if (plan_.output == Kind::interval) return static_cast<double>(next_) * plan_.interval;
+  return next_ < static_cast<long>(plan_.times.size()) ? plan_.times[static_cast<std::size_t>(next_)] : HUGE_VAL;
+}
+
+void TransientObserver::record_between(const system::State& before, const system::State& after) {
+  const double round_off = 1e-9 * (after.t - before.t);
+  interpolation_.take(before, after);
+  for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
+    ++next_;
+    if (t >= after.t - round_off) {
+      record(before, after);
+      continue;
+    }
+    interpolation_.at(t, between_);
+    record(before, between_, true);
+  }
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <rubato/system/locally_nonlinear.hpp>
+#include <rubato/system/mechanism.hpp>
+
+#include <memory>
+
+namespace rubato::integrate {
+
+/// What follows from the configuration and the velocities of a state by the equations of its system. A workspace: one
+/// a march.
+class Balance {
+ public:
+  virtual ~Balance() = default;
+
+  /// Writes `acceleration`, and of a constrained system `multiplier`, of equilibrium; leaves the state unchanged where
+  /// there are none.
+  /// @param side  which limit to take of loads that jump at state.t
+  virtual void find_acceleration(system::State& state, model::Side side) = 0;
+
+  /// Whether the loads jump at t without a trace in the states of a march, which steps over the jump.
+  virtual bool loads_jump(double t) = 0;
+
+  /// Sets the forces of sliders and stops at a state that the motion from `before` reaches without turning back.
+  virtual void find_contact_forces(const system::State& before, system::State& state) const = 0;
+};
+
+/// The system must outlive its balance.
+std::unique_ptr<Balance> make_balance(const system::LocallyNonlinear& system);
+std::unique_ptr<Balance> make_balance(const system::Mechanism& mechanism);
+
+}  // namespace rubato::integrate
