@@ -42,7 +42,7 @@ class LocalErrorEstimator final : public Estimator {
     now_.squared = now_.jump.dot(now_.product);
     now_.fourth = -1.0;
     is_contact_ = space_->touches(from) || space_->touches(to);
-    const bool is_round_off = h * h * std::sqrt(now_.squared) <= space_->round_off();
+    const bool is_round_off = h * h * std::sqrt(now_.squared) < space_->round_off();  // never of structures
     if (c_.order == 1) {
       now_.third = now_.squared / (h * h);
       const double often = scales_.memory_of(now_.jump, now_.squared, h) / h;
