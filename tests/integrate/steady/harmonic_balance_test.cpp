@@ -3,7 +3,7 @@
 #include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
-#include "support/brick_cantilever.hpp"
+#include "support/harmonic_response.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -18,22 +18,11 @@ namespace rubato::integrate {
 namespace {
 
 using testing::damper_model;
+using testing::expect_balance;
+using testing::observing;
+using testing::respond;
 using testing::single_mass;
-
-SteadyRequest observing(std::initializer_list<Index> coordinates) {
-  SteadyRequest request;
-  for (const Index i : coordinates) request.observed.push_back({i, ground});
-  return request;
-}
-
-SteadyResponse respond(const system::LocallyNonlinear& system, const SteadyRequest& request, double tolerance = 1e-6,
-                       int most_harmonics = 201) {
-  HarmonicBalanceSolver solver(system, request, {.tolerance = tolerance, .most_harmonics = most_harmonics});
-  SteadyResponse response;
-  solver.solve(excitation_of(system), SteadyStart::unloaded, response);
-  EXPECT_EQ(response.status, SteadyStatus::converged);
-  return response;
-}
+using testing::structure;
 
 // Reference page, section 3, 40 digits. The series is truncated at an estimated 1e-6 of the amplitude.
 TEST(HarmonicBalance, MeetsTheSteadyStateOfTheSingleMassWithASlider) {
@@ -71,19 +60,6 @@ TEST(HarmonicBalance, MeetsTheSteadyAmplitudesOfTheDamperModel) {
   EXPECT_NEAR(at_ten.amplitude[2], 0.0, 1e-12);
   const auto optimum = respond(damper_model(34.7788, 7.777456595), observing({1}));
   EXPECT_NEAR(optimum.amplitude[0], 3.45279383277, 4e-6);
-}
-
-/// Linear structures with sliders, by hand: dense M, C, K.
-system::LocallyNonlinear structure(const Matrix& mass, const Matrix& damping, const Matrix& stiffness,
-                                   std::vector<model::Slider> sliders, std::vector<system::LoadTerm> loads) {
-  system::LocallyNonlinear::Parts parts;
-  parts.mass = testing::sparse(mass);
-  parts.damping = testing::sparse(damping);
-  parts.stiffness = testing::sparse(stiffness);
-  parts.sliders = std::move(sliders);
-  parts.loads = system::Loads(std::move(loads));
-  for (Index i = 0; i < mass.rows(); ++i) parts.coordinates.push_back("x" + std::to_string(i + 1));
-  return system::LocallyNonlinear(std::move(parts));
 }
 
 /// A chain of three to the ground with two sliders that share a coordinate and one to the ground, loads of two orders
@@ -126,10 +102,6 @@ Marched march(const system::LocallyNonlinear& system, double w, int periods) {
   for (int i = 0; i < 4000; ++i) times.push_back(start + period * i / 4000);
   flow.advance(state, start + period, times, samples);
   return {0.5 * (samples.highest - samples.lowest), samples.sum / samples.count};
-}
-
-void expect_balance(const SteadyResponse& r) {
-  EXPECT_NEAR(r.input_work, r.viscous_work + r.dissipated.sum(), 1e-10 * r.input_work);
 }
 
 TEST(HarmonicBalance, AgreesWithTheExactFlowWhereNothingIsSymmetric) {
@@ -255,75 +227,6 @@ TEST(HarmonicBalance, SaysThatAResonanceWithoutDampingIsUnbounded) {
   EXPECT_NEAR(r.input_work, r.dissipated[0], 1e-9);
 }
 
-// A slender solid turns small differences of large forces into its motion: what it leaves of the load is round-off of
-// 2e10 N/m times 0.01 m, and no sign of a resonance. First natural frequency 34.5 rad/s, damping Rayleigh's.
-TEST(HarmonicBalance, IsFiniteOnASlenderSolidWithDamping) {
-  testing::BrickCantilever blade;
-  blade.along = 100;
-  auto parts = blade.parts();
-  const Index tip = blade.deflection(100), middle = blade.deflection(50);
-  parts.sliders = {{"stuck", middle, ground, 100.0, 1e9}};
-  for (const double w : {18.8, 34.5, 56.5, 94.2}) {
-    parts.loads = system::Loads({testing::harmonic(tip, 1.0, w)});
-    const system::LocallyNonlinear stuck(parts);
-    const SteadyResponse r = respond(stuck, observing({tip}));
-    LinearResponse limit = stuck_limit(stuck, observing({tip}));
-    SteadyResponse linear;
-    limit.solve(excitation_of(stuck), SteadyStart::unloaded, linear);
-    ASSERT_EQ(linear.status, SteadyStatus::converged);
-    // Round-off of the solid itself, eps |K| |x| / |f| = 2e-16 * 2e10 N/m * 0.01 m / N, times what that moves.
-    EXPECT_NEAR(r.amplitude[0], linear.amplitude[0], 1e-5 * linear.amplitude[0]) << w;
-  }
-  // Where it slips: against the modes of the same structure below 300 rows.
-  testing::BrickCantilever small;
-  small.across = 1;
-  small.along = 24;
-  auto few = small.parts();
-  few.sliders = {{"slips", small.deflection(12), ground, 1e3, 0.3}};
-  few.loads = system::Loads({testing::harmonic(small.deflection(24), 1.0, 135.0)});
-  ASSERT_LE(small.rows(), 300);
-  const SteadyResponse modes = respond(system::LocallyNonlinear(few), observing({small.deflection(24)}), 1e-4);
-  EXPECT_GT(modes.slip_share[0], 0.0);
-  // One mass more, loosely tied and without load, makes it too large for modes.
-  const Index n = small.rows(), more = 301 - n;
-  const auto extended = [&](SparseMatrix& matrix, double diagonal) {
-    matrix.conservativeResize(n + more, n + more);
-    for (Index i = n; i < n + more; ++i) matrix.insert(i, i) = diagonal;
-  };
-  extended(few.mass, 1.0);
-  extended(few.damping, 1.0);
-  extended(few.stiffness, 1e4);
-  few.coordinates.clear();
-  for (Index i = 0; i < n + more; ++i) few.coordinates.push_back("x" + std::to_string(i + 1));
-  const SteadyResponse factor = respond(system::LocallyNonlinear(few), observing({small.deflection(24)}), 1e-4);
-  EXPECT_NEAR(factor.amplitude[0], modes.amplitude[0], 2e-4 * modes.amplitude[0]);
-}
-
-// A chain of 400 at its first natural frequency, without damping: a slider of 1 mN does not hold back a load of 1 N,
-// one of 10 N does. At an antinode friction takes 4 b limit, the load gives pi b.
-TEST(HarmonicBalance, SaysThatALargeStructureInResonanceIsUnbounded) {
-  const Index n = 401;
-  const double w = 2.0 * std::sin(std::numbers::pi / (2.0 * (static_cast<double>(n) + 1.0)));
-  for (const double limit : {1e-3, 10.0}) {
-    const auto chain = testing::chain(n, 1, limit);
-    system::LocallyNonlinear::Parts parts;
-    parts.mass = chain.mass();
-    parts.damping = 0.0 * chain.damping();
-    parts.stiffness = chain.stiffness();
-    parts.sliders = chain.sliders();
-    parts.loads = system::Loads({testing::harmonic(n / 2, 1.0, w)});
-    parts.coordinates = chain.coordinates();
-    const system::LocallyNonlinear system(std::move(parts));
-    HarmonicBalanceSolver solver(system, observing({n / 2}));
-    SteadyResponse r;
-    solver.solve(excitation_of(system), SteadyStart::unloaded, r);
-    EXPECT_EQ(r.status == SteadyStatus::unbounded, limit < 1.0) << limit;
-    if (limit > 1.0) {
-      EXPECT_EQ(r.status, SteadyStatus::converged);
-    }
-  }
-}
-
 system::LocallyNonlinear rubbing_mass(double contact_stiffness, double limit, double w, double damping) {
   Matrix m(1, 1), c(1, 1);
   m << 1.0;
@@ -429,42 +332,6 @@ TEST(HarmonicBalance, TakesAStructureThatOnlySlidersHold) {
   EXPECT_EQ(r.transitions, 0);
   EXPECT_NEAR(r.mean[0], 0.025, 1e-12);
   EXPECT_NEAR(r.amplitude[0], 0.3 / std::hypot(3.0, 0.1), 1e-12);
-}
-
-// Sparse factorisation against a dense one: the condensation to few coordinates is exact, so both balance the same
-// equations, to their residual of 2e-12 times the condition of the Jacobian. The loads of the second chain are spread.
-TEST(HarmonicBalance, TakesLargeSparseStructures) {
-  for (const bool is_spread : {false, true}) {
-    const auto chain = testing::chain(400, 4, 0.5);
-    std::vector<system::LoadTerm> loads = chain.loads().terms();
-    if (is_spread) {
-      system::LoadTerm spread{{}, {}, model::HarmonicLaw{0.02, 0.7, 0.3}};
-      for (Index i = 0; i < 400; ++i) {
-        spread.rows.push_back(i);
-        spread.weights.push_back(1.0 + 0.01 * static_cast<double>(i));
-      }
-      loads.push_back(spread);
-    }
-    system::LocallyNonlinear::Parts parts;
-    parts.mass = chain.mass();
-    parts.damping = chain.damping();
-    parts.stiffness = chain.stiffness();
-    parts.sliders = chain.sliders();
-    parts.loads = system::Loads(loads);
-    const system::LocallyNonlinear system(std::move(parts));
-    const SteadyResponse r = respond(system, observing({130, 200}), 1e-4);
-    expect_balance(r);
-    EXPECT_GT(r.dissipated.sum(), 0.0);
-    // Dense by force: an entry everywhere in C, too small to matter, makes the matrix full.
-    Matrix full = Matrix(system.damping());
-    for (Index i = 0; i < 400; ++i)
-      for (Index j = 0; j < 400; ++j)
-        if (full(i, j) == 0.0) full(i, j) = 1e-300;
-    const auto dense =
-        structure(Matrix(system.mass()), full, Matrix(system.stiffness()), system.sliders(), system.loads().terms());
-    const SteadyResponse modes = respond(dense, observing({130, 200}), 1e-4);
-    for (Index i = 0; i < 2; ++i) EXPECT_NEAR(r.amplitude[i], modes.amplitude[i], 1e-9 * modes.amplitude.maxCoeff());
-  }
 }
 
 TEST(HarmonicBalance, GivesTheWaveformOfItsResponse) {

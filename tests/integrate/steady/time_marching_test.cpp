@@ -3,6 +3,7 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/steady/quasi_periodic.hpp>
 
+#include <support/harmonic_response.hpp>
 #include <support/models.hpp>
 
 #include <gtest/gtest.h>
@@ -17,13 +18,8 @@ namespace {
 
 using testing::damper_model;
 using testing::harmonic;
+using testing::observing;
 using testing::single_mass;
-
-SteadyRequest observing(std::initializer_list<Index> coordinates) {
-  SteadyRequest request;
-  for (const Index i : coordinates) request.observed.push_back({i, ground});
-  return request;
-}
 
 SteadyResponse response_of(const system::LocallyNonlinear& system, TimeMarchingOptions options, SteadyRequest request,
                            SteadyStart start = SteadyStart::unloaded) {
