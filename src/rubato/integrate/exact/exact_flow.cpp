@@ -190,7 +190,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     }
     if (!(state.t < t_end)) break;
     book(booked, length);
-    visitor.piece(piece_, state.t, length, states_);
+    const bool goes_on = visitor.piece(piece_, state.t, length, states_);
     now_.t = end;
     piece_.evaluate(length, now_);
     // Against what a piece may be long: near t = 0 any time is large beside t.
@@ -201,6 +201,10 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
       ++without_time;
     }
     std::swap(state, now_);
+    if (!goes_on) {
+      report.end = ExactEnd::stopped;
+      return report;
+    }
     if (!std::isfinite(state.v.sum()) || !std::isfinite(state.q.sum())) {
       report.end = ExactEnd::not_finite;
       return report;

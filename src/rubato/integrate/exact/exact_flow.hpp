@@ -29,8 +29,9 @@ class ExactVisitor {
   virtual bool sample(const system::State& state, const ExactWork& work) = 0;
   virtual bool transition(const system::State& state, const Transition& transition, const ExactWork& work) = 0;
   /// Sees every piece once, with the part of it that is used: from its start over a length [s].
-  virtual void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) {
+  virtual bool piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) {
     (void)piece, (void)start, (void)length, (void)states;
+    return true;
   }
 };
 

@@ -119,8 +119,8 @@ bool HarmonicBalanceSolver::Implementation::shoot(const Excitation& excitation, 
   } else {
     solver->solve(excitation, offsets_from, motion);
   }
-  if (motion.status != SteadyStatus::drifting && !(may_repeat && motion.status == SteadyStatus::converged))
-    return false;
+  const bool repeats = motion.status == SteadyStatus::converged && (may_repeat || !can_condense);
+  if (motion.status != SteadyStatus::drifting && !repeats) return false;
   motion.iterations += response.iterations;
   response = std::move(motion);
   shot = std::move(solver);

@@ -68,6 +68,18 @@ bool Orbit::slips(Index slider) const {
   });
 }
 
+void Orbit::take_as_stuck(Index slider) {
+  const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
+  std::array<double, TaylorPiece::degree + 1> storage;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Piece& piece = pieces_[i];
+    SliderState& state = piece.states[static_cast<std::size_t>(slider)];
+    if (state == SliderState::stick) continue;
+    state = SliderState::stick;
+    piece.offset[slider] -= element.stiffness * difference(piece, element.first, element.second, storage)[0];
+  }
+}
+
 void Orbit::carry(FlowDerivative& derivative) const {
   for (std::size_t i = 0; i < count_; ++i) derivative.pass(pieces_[i].length, pieces_[i].turn, pieces_[i].states);
 }

@@ -18,6 +18,8 @@ class Orbit {
   void clear() { count_ = 0; }
   void add(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states);
   bool slips(Index slider) const;
+  /// Takes a slider that only touches its limit for one that sticks throughout.
+  void take_as_stuck(Index slider);
   /// Carries the derivative of the flow along what is stored.
   void carry(FlowDerivative& derivative) const;
 

@@ -1,7 +1,6 @@
+#include <rubato/integrate/steady/free_motions.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 #include <rubato/integrate/steady/undamped_resonance.hpp>
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -16,32 +15,49 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double good_enough = 1e-10;  // residual that is accepted where round-off allows no smaller one
 constexpr double suspicious = 1e3;     // a step that much longer than the state: a resonance without damping?
 constexpr double walking = 1e-9;       // drift over a period, relative to the state, that is none of round-off
-constexpr int most_halvings = 3, most_moves = 60, longest_stretch = 64;
+constexpr int most_halvings = 3, most_moves = 4, longest_stretch = 64;
 
 }  // namespace
 
-/// Keeps the pieces of a pass.
+/// Keeps the pieces of a pass, and ends one that has too many: a contact that chatters.
 class PeriodicSolver::Recorder final : public ExactVisitor {
  public:
-  explicit Recorder(Orbit& orbit) : orbit_(orbit) { orbit_.clear(); }
+  Recorder(Orbit& orbit, long most_pieces) : orbit_(orbit), left_(most_pieces) { orbit_.clear(); }
   bool sample(const system::State&, const ExactWork&) override { return true; }
   bool transition(const system::State&, const Transition&, const ExactWork&) override { return true; }
-  void piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) override {
+  bool piece(const TaylorPiece& piece, double start, double length, const std::vector<SliderState>& states) override {
     orbit_.add(piece, start, length, states);
+    return --left_ > 0;
   }
 
  private:
   Orbit& orbit_;
+  long left_;
 };
+
+// A step of Newton may lead so far away that the forces of sliders, which are differences of displacements, are lost in
+// round-off: they would slip and stick by it without end.
+bool PeriodicSolver::resolves_slider_forces(const Excitation& excitation) const {
+  constexpr double least_resolution = 1e-8;  // of the limit
+  for (Index i = 0; i < m_; ++i) {
+    const double force = system_.sliders()[static_cast<std::size_t>(i)].stiffness *
+                         std::abs(system_.relative_displacement(i, y_.head(n_)));
+    if (excitation.limits[i] > 0.0 &&
+        !(std::numeric_limits<double>::epsilon() * force <= least_resolution * excitation.limits[i]))
+      return false;
+  }
+  return true;
+}
 
 // One pass of the flow from y_, over a period or half of it: orbit and P(y) - y.
 bool PeriodicSolver::pass(const Excitation& excitation) {
+  if (!resolves_slider_forces(excitation)) return false;
   start_.t = 0.0;
   start_.q = y_.head(n_);
   start_.v = y_.segment(n_, n_);
   start_.slider_force = y_.tail(m_);
   end_ = start_;
-  Recorder recorder(orbit_);
+  Recorder recorder(orbit_, static_cast<long>(most_pieces()));
   factors_are_of_orbit_ = false;
   const ExactReport report = flow_.advance(end_, excitation.period() * (half_ ? 0.5 : 1.0), {}, recorder);
   if (report.end != ExactEnd::reached) return false;
@@ -97,23 +113,32 @@ void PeriodicSolver::factorise() {
   factors_.compute(matrix_);
 }
 
-// Rigid motions that no slider which sticks in the pass holds, phi^T M phi = 1 [n x any].
+// Rigid motions that some slider sees, and none that sticks in the pass: the structure may walk along them.
 Matrix PeriodicSolver::open_motions() const {
-  Matrix held = Matrix::Zero(m_, rigid_.cols());
+  Matrix held = Matrix::Zero(m_ + free_.cols(), rigid_.cols());
   for (Index i = 0; i < m_; ++i)
     if (!orbit_.slips(i))
       for (Index k = 0; k < rigid_.cols(); ++k) held(i, k) = system_.relative_displacement(i, rigid_.col(k));
-  const Eigen::FullPivLU<Matrix> holds(held);
-  const Index open = holds.dimensionOfKernel();
-  if (open == 0) return Matrix(n_, 0);
-  const Eigen::HouseholderQR<Matrix> basis(holds.kernel());
-  return rigid_ * (basis.householderQ() * Matrix::Identity(rigid_.cols(), open));
+  held.bottomRows(free_.cols()) = free_.transpose() * (system_.mass() * rigid_);
+  return kernel_of(held, rigid_);
 }
 
-// The orbit may lie anywhere along an open motion: Newton's steps leave it in place, in the metric of the mass.
+// The orbit may lie anywhere along an open motion: Newton's steps leave it in place, in the metric of the mass. Along a
+// free one as well, whose velocity repeats by itself: these rows hold its place, and its speed is such that it returns.
 void PeriodicSolver::hold_rigid_motions() {
   const Matrix open = open_motions();
   matrix_.topLeftCorner(n_, n_) += open * (open.transpose() * Matrix(system_.mass()));
+  matrix_.block(n_, 0, n_, n_) += free_ * (free_.transpose() * Matrix(system_.mass()));
+}
+
+// A structure that floats may lie anywhere: it is put where it lies on average where it was installed. Its own motion
+// follows from the loads alone, (k w)^2 p_k = -phi^T a_k.
+void PeriodicSolver::place_free_motions(const Excitation& excitation) {
+  if (free_.cols() == 0) return;
+  Vector place = -(free_.transpose() * (system_.mass() * y_.head(n_)));
+  for (const LoadHarmonic& load : excitation.harmonics)
+    place -= free_.transpose() * load.amplitude.real() / std::pow(load.order * excitation.angular_frequency, 2);
+  y_.head(n_) += free_ * place;
 }
 
 // Newton's step from y_, with the matrix last factorised. False at a resonance without damping.
@@ -121,7 +146,7 @@ bool PeriodicSolver::correct() {
   right_side_ = -difference_;
   if (!half_)
     for (Index i = 0; i < m_; ++i)
-      if (!orbit_.slips(i)) right_side_[2 * n_ + i] = offset_shift_[i];
+      if (!orbit_.slips(i)) right_side_[2 * n_ + i] = 0.0;
   correction_.noalias() = factors_.solve(right_side_);
   return correction_.allFinite();
 }
@@ -156,9 +181,9 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
   double best = infinity;
   int halvings = 0, periods = 0, stretch = 4;
   const int first = response.iterations;
-  bool may_move = true, moving = false;
+  int moves = 0;
   near_factors_ = false;
-  Vector settled;  // an orbit whose offsets are being moved
+  Vector settled;  // the last orbit, whose offsets were moved
   while (response.iterations < first + options_.most_iterations) {
     ++response.iterations;
     double& last = response.residual;
@@ -171,18 +196,12 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
       best = 0.0;  // settled
     }
     if (last <= options_.tolerance || best == 0.0) {
-      if (!may_move || response.iterations > first + most_moves || !must_move_offsets(excitation)) return true;
       settled = y_;
-      moving = true;
+      if (moves == most_moves || !move_offsets(excitation)) return true;
+      ++moves;
       best = infinity;
       halvings = 0;
-      // The factors at hand may be of a pass in which the slider slipped.
-      factorise();
-      const bool solved = correct();
-      offset_shift_.setZero();
       near_factors_ = false;
-      if (solved) put(settled + correction_, excitation);
-      may_move = solved;
       continue;
     }
     // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
@@ -202,10 +221,6 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
         response.status = SteadyStatus::unbounded;
         return false;
       }
-    } else if (moving) {  // another slider slips then: the offset stays
-      moving = may_move = false;
-      y_ = settled;
-      best = infinity;
     } else if (halvings < most_halvings && best < infinity) {
       put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
     } else {
@@ -217,7 +232,7 @@ bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& respo
       halvings = 0;
     }
   }
-  if (!moving) return false;
+  if (moves == 0) return false;
   y_ = settled;
   response.residual = pass(excitation) ? residual(excitation) : infinity;
   return response.residual <= good_enough;

@@ -1,3 +1,4 @@
+#include <rubato/integrate/steady/free_motions.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 
 #include <rubato/core/error.hpp>
@@ -50,16 +51,24 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
   y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
   const Index rigid = (modes.eigenvalues.array() == 0.0).count();
-  if (m_ > 0) rigid_ = modes.shapes.leftCols(rigid);
+  if (m_ > 0) {
+    rigid_ = modes.shapes.leftCols(rigid);
+    free_ = free_motions(system, rigid_);
+  }
   fastest_ = std::sqrt(std::max(0.0, modes.eigenvalues.maxCoeff()));
-  wanted_offset_ = offset_shift_ = centre_ = Vector::Zero(m_);
+  wanted_offset_ = centre_ = Vector::Zero(m_);
 }
 
-// An orbit keeps its pieces, about pi w_n/w a period of the fastest motion, of some forty terms a coordinate.
-void PeriodicSolver::require_memory(const Excitation& excitation) const {
+// An orbit keeps its pieces, of some forty terms a coordinate.
+double PeriodicSolver::most_pieces() const {
   constexpr double most_bytes = 1e9, terms = 40.0;
+  return most_bytes / (terms * static_cast<double>(n_ + m_) * sizeof(double));
+}
+
+// About pi w_n/w pieces in a period, with the fastest motion's w_n.
+void PeriodicSolver::require_memory(const Excitation& excitation) const {
   const double pieces = std::numbers::pi * fastest_ / excitation.angular_frequency;
-  if (pieces * terms * static_cast<double>(n_ + m_) * sizeof(double) <= most_bytes) return;
+  if (pieces <= most_pieces()) return;
   throw InvalidInput(
       fmt::format("a period of {:.4g} s holds {:.3g} of the fastest natural periods of the model, too many "
                   "for solver = \"periodic\", which follows each; take solver = \"harmonic_balance\"",
@@ -148,7 +157,6 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
   last_ = excitation;
   response.periods = 1;
   response.iterations = 0;
-  offset_shift_.setZero(m_);
   flow_.set_excitation(excitation);
   take_start(excitation, start);
 
@@ -159,6 +167,10 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     known_.clear();
     return;
   }
+  if (converged && free_.cols() > 0) {
+    place_free_motions(excitation);
+    if (pass(excitation)) response.residual = residual(excitation);
+  }
   if (converged) response.status = drift(excitation) > walking ? SteadyStatus::drifting : SteadyStatus::converged;
   measure(excitation, response);
   // What the small rest of the residual does to the balance of a slightly damped structure.
@@ -167,10 +179,17 @@ void PeriodicSolver::solve(const Excitation& excitation, SteadyStart start, Stea
     near_factors_ = true;
     if (!correct()) break;
     ++response.iterations;
+    const Vector before = y_;
+    const double worst = std::max(response.residual, options_.tolerance);
     put(y_ + correction_, excitation);
-    if (!pass(excitation)) break;
+    const bool is_better = pass(excitation) && residual(excitation) <= worst;
+    if (!is_better) {
+      y_ = before;
+      if (!pass(excitation)) break;
+    }
     response.residual = residual(excitation);
     measure(excitation, response);
+    if (!is_better) break;
   }
   const double largest = response.amplitude.size() > 0 ? response.amplitude.maxCoeff() : 0.0;
   response.error = round_off;

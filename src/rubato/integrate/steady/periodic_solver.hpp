@@ -30,7 +30,8 @@ struct PeriodicOptions {
 /// A structure that sliders alone hold may walk: P(y) = y + (phi, 0, 0) with phi a motion that no spring resists and
 /// every slider that sees it slips along. Newton's steps leave such motions in place and the residual does not count
 /// them, so that a walk is found as an orbit is. No other motion is steady then: friction, damping and springs never
-/// part two motions, and the walk goes on.
+/// part two motions, and the walk goes on. A structure that floats, some motions of which nothing
+/// resists, does not drift and lies on average where it was installed.
 ///
 /// A slider that never slips leaves its offset fc - kT u free: it is the one that SteadyStart asks for, or the nearest
 /// with which it does not slip.
@@ -63,19 +64,21 @@ class PeriodicSolver final : public SteadySolver {
   void predict(const Excitation& excitation);
   void march_from_rest(const Excitation& excitation);
   bool march(const Excitation& excitation, int periods);
+  bool resolves_slider_forces(const Excitation& excitation) const;
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
   void factorise();
   Matrix open_motions() const;
   void hold_rigid_motions();
+  void place_free_motions(const Excitation& excitation);
   double drift(const Excitation& excitation) const;
   void measure(const Excitation& excitation, SteadyResponse& response);
+  double most_pieces() const;
   void require_memory(const Excitation& excitation) const;
   bool correct();
   bool iterate(const Excitation& excitation, SteadyResponse& response);
   bool iterate_from_elsewhere(const Excitation& excitation, SteadyResponse& response);
-  double force_by_offset(Index slider);
-  bool must_move_offsets(const Excitation& excitation);
+  bool move_offsets(const Excitation& excitation);
   double size_of(const Excitation& excitation, const Vector& y) const;
   double observed_size(const Vector& y) const;
   void put(const Vector& y, const Excitation& excitation);
@@ -93,12 +96,12 @@ class PeriodicSolver final : public SteadySolver {
   system::State start_, end_;                  // of a pass
   Vector y_, difference_, correction_, best_;  // (q, v, fc) at the start; P(y) - y; Newton's step from best_
   Vector right_side_;
-  Vector wanted_offset_, offset_shift_, offset_probe_,
-      centre_;  // of sliders that never slip; last: of all, at the last point
+  Vector wanted_offset_, centre_;  // of sliders that never slip; of all, at the last point
   Matrix matrix_;
   double fastest_ = 0.0;  // natural frequency without sliders [rad/s]
   Vector drift_;          // part of P(y) - y along open motions [n] [m]; the difference is without it
   Matrix rigid_;          // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
+  Matrix free_;           // of these, in the same way, those that no slider sees and no dashpot resists [n x any]
   Eigen::PartialPivLU<Matrix> factors_;
   bool factors_are_of_orbit_ = false;
   bool near_factors_ = false;        // the last pass was made after a full step with these factors

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/steady/free_motions.hpp>
 #include <rubato/integrate/steady/lane_map.hpp>
 #include <rubato/integrate/steady/stepper_map.hpp>
 #include <rubato/integrate/steady/time_marching_parts.hpp>
@@ -49,6 +50,10 @@ TimeMarchingSolver::TimeMarchingSolver(const system::LocallyNonlinear& system, T
                                        SteadyRequest request)
     : system_(system), options_(std::move(options)), request_(std::move(request)) {
   check_options(options_, system);
+  if (free_motions(system).cols() > 0)
+    throw InvalidInput(
+        "the structure floats: no spring, damper, slider or stop holds it, and a march goes on with whatever speed it "
+        "has; take solver = \"periodic\", or a spring to the ground that is soft beside the others");
   if (options_.periodicity == 0.0) options_.periodicity = 0.01 * options_.tolerance;
   longest_step_ = longest_step(options_.method, system);
   resolved_frequency_ = std::holds_alternative<Exponential>(options_.method.formula) ? 0.0 : highest_frequency(system);
