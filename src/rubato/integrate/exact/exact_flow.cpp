@@ -144,6 +144,9 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   std::size_t next_break = 0, next_sample = 0;
   long without_time = 0;
   double progress = state.t;
+  // How far the state is beyond state.t, which is rounded: thousands of pieces that each lose some of it turn the phase
+  // of the fastest mode.
+  double beyond = 0.0;
   now_ = state;
   // Where forces and rates stand tells the likeliest states; the first decision sees all sliders.
   for (std::size_t k = 0; k < states_.size(); ++k) {
@@ -169,15 +172,18 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
   while (state.t < t_end || next_sample < samples.size()) {
     stop_if_asked();
     const double piece_end = std::min(t_end, table_end());
-    double length = std::min(piece_.max_length(), piece_end - state.t);
-    const bool reaches_end = length >= piece_end - state.t;
+    const bool reaches_end = piece_.max_length() >= piece_end - state.t;
+    double end = reaches_end ? piece_end : state.t + piece_.max_length();
+    double length = std::max((end - state.t) - beyond, 0.0);
     Index slider = -1;
     const double event = length > 0.0 ? next_event(length, slider) : -1.0;
-    if (event >= 0.0) length = event;
-    const double end = event >= 0.0 ? state.t + length : reaches_end ? piece_end : state.t + length;
+    if (event >= 0.0) {
+      length = event;
+      end = std::min(state.t + (beyond + length), piece_end);
+    }
     double booked = 0.0;
     while (next_sample < samples.size() && samples[next_sample] <= end) {
-      const double s = std::clamp(samples[next_sample] - state.t, 0.0, length);
+      const double s = std::clamp((samples[next_sample] - state.t) - beyond, 0.0, length);
       now_.t = samples[next_sample];
       piece_.evaluate(s, now_);
       book(booked, s);
@@ -191,6 +197,7 @@ ExactReport ExactFlow::advance(system::State& state, double t_end, std::span<con
     if (!(state.t < t_end)) break;
     book(booked, length);
     const bool goes_on = visitor.piece(piece_, state.t, length, states_);
+    beyond += (state.t - end) + length;
     now_.t = end;
     piece_.evaluate(length, now_);
     // Against what a piece may be long: near t = 0 any time is large beside t.
