@@ -90,6 +90,7 @@ void StepInterpolation::at(double t, system::State& state) {
   else
     through_knots(count, t, state);
   balance_->find_contact_forces(before, state);
+  if (is_quintic_) balance_->find_acceleration(state, model::Side::left);
 }
 
 void StepInterpolation::through_knots(std::size_t count, double t, system::State& state) {
@@ -110,11 +111,14 @@ void StepInterpolation::through_knots(std::size_t count, double t, system::State
   }
   if (!is_flat) system_.retract(from, travel_, state.q);
   const std::size_t smooth = std::min(count, since_kink_);
+  std::array<integrate::WeighedEnd, most_knots> ends{};
   for (std::size_t age = 0; age < smooth; ++age) {
     const double weight = lagrange_weight({times.data(), smooth}, age, t);
+    ends[age] = {times[age], knot(age).side, weight};
     add_share(age == 0, weight, knot(age).state.acceleration, state.acceleration);
     add_share(age == 0, weight, knot(age).state.multiplier, state.multiplier);
   }
+  balance_->add_swing_of_loads({ends.data(), smooth}, state);
 }
 
 void StepInterpolation::through_ends(double t, system::State& state) {
@@ -128,13 +132,8 @@ void StepInterpolation::through_ends(double t, system::State& state) {
   const double dq1 = 30.0 * s2 * (1.0 + s * (-2.0 + s));
   const double dv0 = 1.0 + s2 * (-18.0 + s * (32.0 - 15.0 * s)), dv1 = s2 * (-12.0 + s * (28.0 - 15.0 * s));
   const double dc0 = s + s2 * (-4.5 + s * (6.0 - 2.5 * s)), dc1 = s2 * (1.5 + s * (-4.0 + 2.5 * s));
-  const double ddq1 = 60.0 * s * (1.0 + s * (-3.0 + 2.0 * s));
-  const double ddv0 = s * (-36.0 + s * (96.0 - 60.0 * s)), ddv1 = s * (-24.0 + s * (84.0 - 60.0 * s));
-  const double ddc0 = 1.0 + s * (-9.0 + s * (18.0 - 10.0 * s)), ddc1 = s * (3.0 + s * (-12.0 + 10.0 * s));
   state.q = q0 * from.q + q1 * to.q + h * (v0 * from.v + v1 * to.v) + (h * h) * (c0 * a0 + c1 * a1);
   state.v = (dq1 / h) * (to.q - from.q) + dv0 * from.v + dv1 * to.v + h * (dc0 * a0 + dc1 * a1);
-  state.acceleration =
-      (ddq1 / (h * h)) * (to.q - from.q) + (ddv0 / h) * from.v + (ddv1 / h) * to.v + ddc0 * a0 + ddc1 * a1;
 }
 
 }  // namespace rubato::analysis

@@ -20,8 +20,10 @@ double lagrange_weight(std::span<const double> times, std::size_t i, double t);
 /// lock; of accelerations and multipliers also after a kink of a load or a drive, which they have themselves). Where
 /// the system is not flat the polynomial is that of the travel from the start of the step. It stays within 1.7 times
 /// its data: an unconditionally stable method may step over the periods of fast modes, whose velocities a Hermite
-/// polynomial would multiply by the step. Methods of higher order follow every mode that they are stable for: in a flat
-/// system they have the quintic through displacement, velocity and acceleration at both ends (error h^6, h^5, h^4).
+/// polynomial would multiply by the step. What loads and drives do beyond that polynomial is added to accelerations and
+/// multipliers by the equations of motion: steps follow the motion, and where it is small loads swing within a step.
+/// Methods of higher order follow every mode that they are stable for: in a flat system they have the quintic through
+/// displacement, velocity and acceleration at both ends (error h^6, h^5), and the acceleration of equilibrium there.
 /// Sliders: the return map from the start of the step. Stops: at its displacement and velocity. Constraints hold at the
 /// ends; between them to the error of the interpolation.
 class StepInterpolation {

@@ -4,8 +4,16 @@
 #include <rubato/system/mechanism.hpp>
 
 #include <memory>
+#include <span>
 
 namespace rubato::integrate {
+
+/// An end of a step, and the weight of its values in a polynomial at another time.
+struct WeighedEnd {
+  double t = 0.0;
+  model::Side side = model::Side::left;  ///< which limit of the loads its acceleration takes
+  double weight = 0.0;                   ///< all of them together are 1
+};
 
 /// What follows from the configuration and the velocities of a state by the equations of its system. A workspace: one
 /// a march.
@@ -17,6 +25,11 @@ class Balance {
   /// there are none.
   /// @param side  which limit to take of loads that jump at state.t
   virtual void find_acceleration(system::State& state, model::Side side) = 0;
+
+  /// Adds to acceleration and multiplier, which a polynomial gives, what loads and drives do at state.t beyond the
+  /// polynomial of what they do at the ends, all of it at the configuration and the velocities of the state: the
+  /// polynomial follows the motion, and where little moves loads may swing within a step.
+  virtual void add_swing_of_loads(std::span<const WeighedEnd> ends, system::State& state) = 0;
 
   /// Whether the loads jump at t without a trace in the states of a march, which steps over the jump.
   virtual bool loads_jump(double t) = 0;

@@ -109,10 +109,15 @@ void EquilibriumAcceleration::operator()(const State& state, Vector& acceleratio
   w.force.noalias() -= w.system.damping() * state.v;
   w.force.noalias() -= w.system.stiffness() * state.q;
   w.system.add_slider_forces(state.slider_force, -1.0, w.force);
+  of_force(w.force, acceleration);
+}
+
+void EquilibriumAcceleration::of_force(const Vector& force, Vector& acceleration) {
+  Workspace& w = *work_;
   if (w.inverse_mass.size() > 0)
-    acceleration = w.force.cwiseProduct(w.inverse_mass);
+    acceleration = force.cwiseProduct(w.inverse_mass);
   else
-    w.factor.solve(w.force, acceleration);
+    w.factor.solve(force, acceleration);
 }
 
 }  // namespace rubato::system

@@ -109,6 +109,8 @@ class EquilibriumAcceleration {
   EquilibriumAcceleration(EquilibriumAcceleration&&) noexcept;
   /// @param side  which limit to take of a load that jumps at state.t
   void operator()(const State& state, Vector& acceleration, model::Side side = model::Side::right);
+  /// M^-1 force
+  void of_force(const Vector& force, Vector& acceleration);
 
  private:
   struct Workspace;

@@ -246,6 +246,16 @@ double MechanismEquations::stored_energy() const {
 
 void MechanismEquations::force_of(model::Element::Role role, Vector& out) {
   out.setZero();
+  add_force_of(role, out);
+}
+
+void MechanismEquations::force_of_loads(Vector& out) {
+  external_force(out);
+  out = -out;
+  add_force_of(model::Element::Role::load, out);
+}
+
+void MechanismEquations::add_force_of(model::Element::Role role, Vector& out) {
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     if (elements_[e]->role() != role) continue;
     const ElementPlace& place = element_places_[e];

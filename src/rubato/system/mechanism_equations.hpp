@@ -117,6 +117,8 @@ class MechanismEquations {
   void set_slip_floors(const State& from, double h, State& to);
   double friction_rate(std::size_t friction) const;  ///< of its coordinate [rad/s] or [m/s]
   double friction_acceleration(std::size_t friction, const Vector& acceleration);  ///< [rad/s^2] or [m/s^2]
+  /// The share of all loads in f: of forces, gravity and laws of joints, and so of all that follows time itself [n].
+  void force_of_loads(Vector& out);
   /// External forces by laws of t, and gravity [n].
   void external_force(Vector& out) const;
 
@@ -162,6 +164,7 @@ class MechanismEquations {
   void analyse();
   void scatter(const ElementPlace& place, const double* matrix, double weight);
   void elements_and_loads(Vector& force);
+  void add_force_of(model::Element::Role role, Vector& out);
 
   const Mechanism& mechanism_;
   std::vector<std::unique_ptr<model::Element>> elements_;

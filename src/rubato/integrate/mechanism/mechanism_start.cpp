@@ -82,6 +82,28 @@ bool find_acceleration_at_rest(system::MechanismEquations& equations, system::St
   return balance(equations, state, side, true);
 }
 
+bool add_acceleration(system::MechanismEquations& equations, system::State& state, const Vector& force,
+                      const Vector& rate) {
+  const auto& mechanism = equations.mechanism();
+  Vector left(force.size()), left_rate(rate.size()), rate_of_time(rate.size());
+  if (!factorise_mass(equations, state, model::Side::left, left, left_rate, true)) return false;
+  Vector acceleration = -force, multiplier = -rate;
+  equations.solve(acceleration, multiplier);
+  // As in balance(), the share of the multipliers in the constraint rows, and what friction does that is not linear.
+  mechanism.times_mass(acceleration, left);
+  left = -(force + left);
+  equations.add_constraint_force(state.multiplier + multiplier, -1.0, left);
+  equations.add_constraint_force(state.multiplier, 1.0, left);
+  equations.constraint_rate(acceleration, left_rate);
+  equations.constraint_rate(Vector::Zero(force.size()), rate_of_time);
+  left_rate = -(left_rate - rate_of_time + rate);
+  equations.solve(left, left_rate);
+  if (!left.allFinite() || !left_rate.allFinite()) return false;
+  state.acceleration += acceleration + left;
+  state.multiplier += multiplier + left_rate;
+  return true;
+}
+
 ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given, model::Side side) {
   const auto& mechanism = equations.mechanism();
   const Index n = mechanism.size(), c = mechanism.constraint_count();

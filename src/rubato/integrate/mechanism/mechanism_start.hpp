@@ -45,6 +45,13 @@ bool find_acceleration(system::MechanismEquations& equations, system::State& sta
 /// The same with all velocities zero and the drives held where they are, whatever their rates: for statics and modes.
 bool find_acceleration_at_rest(system::MechanismEquations& equations, system::State& state, model::Side side);
 
+/// Adds to acceleration and multiplier of a state what a change of its equations makes of them, where the constraints
+/// and the friction that follows reactions are those of the state:  M da + G^T dmultiplier = -force,  G da = -rate.
+/// Returns false where the matrix cannot be factorised.
+/// @param force  the change of f [n]   @param rate  of second_rate() [c]
+bool add_acceleration(system::MechanismEquations& equations, system::State& state, const Vector& force,
+                      const Vector& rate);
+
 /// The auxiliary acceleration of a method that carries that at t + shift h: A = a + shift h da/dt, with da/dt from the
 /// accelerations at both ends of a short motion. Multipliers are of second order only with this start (Arnold, Bruels
 /// and Cardona 2015).
