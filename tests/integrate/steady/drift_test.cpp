@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace rubato::integrate {
 namespace {
@@ -153,6 +154,37 @@ TEST(Drift, GrowsForEverBesideAMassWithADashpot) {
   for (const Route& route : routes) {
     SCOPED_TRACE(route.name);
     EXPECT_EQ(respond(route.name, system).status, SteadyStatus::unbounded);
+  }
+}
+
+// A chain of three that one slider holds, beside a static load. Very far away the force of the slider is what round-off
+// makes of it, and balances anything: harmonic balance told `converged` with a mean of 4.5e14 m. By shooting it walks.
+TEST(Drift, IsNotLostInABalanceFarAway) {
+  Matrix stiffness(3, 3);
+  stiffness << 1.70679, -1.70679, 0.0, -1.70679, 4.63312, -2.92633, 0.0, -2.92633, 2.92633;
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(Vector{{0.597243, 1.33168, 1.50341}}.asDiagonal());
+  parts.damping = testing::sparse(0.196962 * stiffness);
+  parts.stiffness = testing::sparse(stiffness);
+  parts.sliders = {{"contact", 2, ground, 67.6213, 0.387845}};
+  parts.coordinates = {"a", "b", "c"};
+  const system::LocallyNonlinear system(std::move(parts));
+  for (const auto& [share, w] : {std::pair{0.426659, 0.380956}, std::pair{0.362037, 0.484853}}) {
+    SCOPED_TRACE(w);
+    Excitation load;
+    load.angular_frequency = w;
+    load.harmonics = {{1, ComplexVector::Unit(3, 0) * (share * 0.577747)},
+                      {2, ComplexVector::Unit(3, 2) * (share * Complex(0.212791, -0.172431))}};
+    load.constant = Vector::Constant(3, 0.0935439);
+    load.limits = Vector::Constant(1, 0.387845);
+    const SteadyRequest request{{{0}, {2}}, {1}};
+    SteadyResponse walking, balanced;
+    PeriodicSolver(system, request).solve(load, SteadyStart::unloaded, walking);
+    HarmonicBalanceSolver(system, request).solve(load, SteadyStart::unloaded, balanced);
+    ASSERT_EQ(walking.status, SteadyStatus::drifting);
+    ASSERT_EQ(balanced.status, SteadyStatus::drifting);
+    EXPECT_NEAR(balanced.amplitude[0], walking.amplitude[0], 1e-6 * walking.amplitude[0]);
+    EXPECT_NEAR(balanced.drift[1], walking.drift[1], 1e-6 * std::abs(walking.drift[1]));
   }
 }
 

@@ -38,14 +38,10 @@ class PeriodicSolver::Recorder final : public ExactVisitor {
 // A step of Newton may lead so far away that the forces of sliders, which are differences of displacements, are lost in
 // round-off: they would slip and stick by it without end.
 bool PeriodicSolver::resolves_slider_forces(const Excitation& excitation) const {
-  constexpr double least_resolution = 1e-8;  // of the limit
-  for (Index i = 0; i < m_; ++i) {
-    const double force = system_.sliders()[static_cast<std::size_t>(i)].stiffness *
-                         std::abs(system_.relative_displacement(i, y_.head(n_)));
-    if (excitation.limits[i] > 0.0 &&
-        !(std::numeric_limits<double>::epsilon() * force <= least_resolution * excitation.limits[i]))
+  for (Index i = 0; i < m_; ++i)
+    if (!is_slider_force_resolved(system_.sliders()[static_cast<std::size_t>(i)].stiffness,
+                                  system_.relative_displacement(i, y_.head(n_)), excitation.limits[i]))
       return false;
-  }
   return true;
 }
 

@@ -2,6 +2,8 @@
 
 #include <rubato/integrate/steady/excitation.hpp>
 
+#include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -82,5 +84,14 @@ class SteadySolver {
   virtual Waveform waveform(int points) const = 0;
   virtual void forget() = 0;
 };
+
+/// Whether the force of a slider, a difference of displacements, is known to 1e-8 of its limit: very far away it is
+/// lost in round-off.
+/// @param displacement  u [m]
+inline bool is_slider_force_resolved(double stiffness, double displacement, double limit) {
+  constexpr double least_resolution = 1e-8;
+  const double round_off = std::numeric_limits<double>::epsilon() * stiffness * std::abs(displacement);
+  return limit == 0.0 || round_off <= least_resolution * limit;
+}
 
 }  // namespace rubato::integrate
