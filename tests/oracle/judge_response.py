@@ -47,9 +47,16 @@ def frequency_response(study, model, analysis, table, pairs):
                 # Extremes between 240 samples of the velocities of fast modes err by 1e-3.
                 motion, fundamental, flow = steady.march(now, samples=1920 if solver == "periodic" else 240)
                 size = numpy.max(numpy.ptp(motion["q"], axis=0))
-                if now.stops and any(numpy.max(numpy.abs(numpy.ptp(other["q"], axis=0) - numpy.ptp(motion["q"], axis=0)))
-                                     > allowed * size for other in steady.other_motions(now)):
-                    continue  # it is a matter of the start where the motion goes
+                if now.stops:
+                    # It is a matter of the start where the motion goes: one of those that repeat must be the row's.
+                    motions = [motion, *steady.other_motions(now)]
+                    start = _start_of_row(analysis, now, table, i, fundamental)
+                    if start is None and any(_apart(motion, other) > allowed * size for other in motions):
+                        continue
+                    row_size = _size_of_row(analysis, now, table, i)
+                    if start is not None and all(abs(_size(analysis, now, m) / row_size - 1) > allowed for m in motions):
+                        motions.append(steady.march(now, start=start)[0])
+                    motion = min(motions, key=lambda m: abs(_size(analysis, now, m) - row_size))
                 waves = [(motion["q"], motion["v"])]
                 offsets = any(numpy.ptp(motion["slip"][:, k]) < 1e-9 * slider.limit / slider.stiffness
                               for k, slider in enumerate(now.sliders))
@@ -106,6 +113,37 @@ def frequency_response(study, model, analysis, table, pairs):
         return Verdict(name, "frequency_response", "failed" if told else "skipped", f"no row to compare {told[:1]}")
     return worst(name, f"frequency_response {solver}" if model.sliders or solver == "time_marching"
                   else "frequency_response linear", checks)
+
+
+def _apart(motion, other):
+    return numpy.max(numpy.abs(numpy.ptp(other["q"], axis=0) - numpy.ptp(motion["q"], axis=0)))
+
+
+def _words(now, row):
+    return ("angle_amplitude [rad]", "angle_mean [rad]") if any(now.rotation[j] for j in numpy.nonzero(row)[0]) else (
+        "amplitude [m]", "mean [m]")
+
+
+def _size(analysis, now, motion):
+    return max(steady.extremes(motion["q"] @ now.row(c)) for c in observed_of(analysis, now))
+
+
+def _size_of_row(analysis, now, table, i):
+    return max(table.column(f"{c}.{_words(now, now.row(c))[0]}")[i] for c in observed_of(analysis, now))
+
+
+def _start_of_row(analysis, now, table, i, fundamental):
+    """q and v at t = 0 of the first harmonic that a row tells, or None where it does not tell all coordinates."""
+    rows = numpy.array([now.row(c) for c in observed_of(analysis, now)])
+    if numpy.linalg.matrix_rank(rows) < rows.shape[1]:
+        return None
+    q, v = [], []
+    for c, row in zip(observed_of(analysis, now), rows):
+        amplitude, mean = (table.column(f"{c}.{word}")[i] for word in _words(now, row))
+        turned = amplitude * numpy.exp(1j * table.column(f"{c}.phase [rad]")[i])
+        q.append(mean + turned.real)
+        v.append(-fundamental * turned.imag)
+    return tuple(numpy.linalg.lstsq(rows, numpy.array(x), rcond=None)[0] for x in (q, v))
 
 
 def _floats(model, coordinate):
