@@ -128,6 +128,51 @@ TEST(MethodStudy, GivesTheCorrectFiguresOfTheThesisModel) {
   EXPECT_EQ(result.progress.done, result.progress.total);
 }
 
+/// What the errors of a study are divided by: the largest difference of a method in the response, over its error.
+double reference_size(const system::LocallyNonlinear& system, const model::MethodStudyDescription& study) {
+  const Recorded result = run(system, study);
+  const auto &errors = result.sink.tables.at("study"), &response = result.sink.tables.at("study.response");
+  double largest = 0.0;
+  for (const auto& row : response.rows)
+    largest = std::max(largest, std::abs(row[response.column("difference", "average_acceleration")]));
+  return largest / errors.rows.at(0)[errors.column("max_error")];
+}
+
+// Two equal masses between walls and to each other move together with w1 = 1 rad/s and against each other with
+// w2 = 40 rad/s; at quarters of the step the fast mode has turned by 5 rad. From x = 0 and velocities v1 + v2, v1 - v2
+// the first moves by v1/w1 sin(w1 t) + v2/w2 sin(w2 t), and their distance by 2 v2/w2 sin(w2 t). What is allowed is the
+// round-off of four hundred pieces.
+TEST(MethodStudy, RelatesErrorsToTheLargestDisplacementWhereModesAreFasterThanTheStep) {
+  constexpr double slow = 1.0, fast = 40.0, v1 = 0.7, v2 = 9.0, duration = 20.0;
+  const double wall = slow * slow, between = 0.5 * (fast * fast - wall);
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse(Matrix::Identity(2, 2));
+  parts.damping = SparseMatrix(2, 2);
+  parts.stiffness = testing::sparse((Matrix(2, 2) << wall + between, -between, -between, wall + between).finished());
+  parts.start.q = Vector::Zero(2);
+  parts.start.v = (Vector(2) << v1 + v2, v1 - v2).finished();
+  parts.coordinates = {"a", "b"};
+  const system::LocallyNonlinear system(std::move(parts));
+  auto study = study_of(0.5, duration);
+  study.methods.resize(1);
+  study.methods[0].name = "average_acceleration";
+  study.ladder = {model::Quantity(0.5)};
+
+  // Between samples h apart the largest may be higher by (w2 h)^2/8 of the fast part: 8e-12 of it.
+  constexpr double h = 2e-7;
+  double largest = 0.0;
+  for (double coarse = 0.0; coarse < duration; coarse += 1e-3) {
+    const auto x = [](double t) { return std::abs(v1 / slow * std::sin(slow * t) + v2 / fast * std::sin(fast * t)); };
+    // The slope is at most v1 + v2: from below a thousandth of a second leads no higher.
+    if (x(coarse) < largest - 1e-3 * (v1 + v2)) continue;
+    for (double t = coarse; t < std::min(coarse + 1e-3, duration); t += h) largest = std::max(largest, x(t));
+  }
+  EXPECT_NEAR(reference_size(system, study), largest, 1e-11 * largest);
+
+  study.observe = model::ObservationDescription{"a", "b", {}};
+  EXPECT_NEAR(reference_size(system, study), 2.0 * v2 / fast, 1e-11);
+}
+
 // x'' + x = cos t from rest: x = t/2 sin t. Round-off of some hundred Taylor pieces of numbers of at most 25.
 TEST(MethodStudy, KnowsTheResponseAtResonanceWithoutDamping) {
   auto study = study_of(0.05, 50.0);

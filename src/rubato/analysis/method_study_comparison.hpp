@@ -16,8 +16,8 @@ struct ExactResponse {
 };
 
 /// The exact displacement at the multiples of a step, by the event-driven flow (Taylor pieces, exact to round-off
-/// whatever the roots of the structure: at resonance, without damping, overdamped). `largest` lies on the cubic through
-/// displacement and velocity of two neighbouring samples.
+/// whatever the roots of the structure: at resonance, without damping, overdamped). `largest` is an extremum of a
+/// piece, however long the step is beside the periods of the structure.
 ExactResponse exact_response(const MethodStudyPlan& plan, const system::LocallyNonlinear& system, double step);
 
 /// Compares every step of a march with the exact displacement.
