@@ -1,8 +1,7 @@
 """Judges studies of methods: every column of their tables against marches of the oracle's own.
 
 What may differ is round-off, which a march adds up: 1e-11 of the largest displacement, times the condition of the mass
-and the steps of the stiffest motion; and of the size, which the command takes from cubics between quarters of the step:
-their error, and where modes are faster than that, as much as three times what the samples alone miss.
+and the steps of the stiffest motion; and the size, which is sampled here to 1e-6, or as finely as 10 million samples are.
 """
 
 import math
@@ -12,6 +11,7 @@ import numpy
 import methods
 from verdicts import Table, worst
 
+MOST_SAMPLES = 1e7
 BORDER = 1e-6  # a spectral radius this near to 1 says nothing of stability: rigid motions have a double root there
 
 
@@ -37,12 +37,10 @@ def method_study(study, model, analysis, table, pairs):
         marches = listed
         checks.append((f"methods {labels}", float(labels != list(listed)), 0.5))
     exact = problem.exact(0.25 * step, 4 * count, row)
-    size = _largest(problem, exact, 0.25 * step, row)
+    size, of_size = _largest(problem, 0.25 * step, 4 * count, row)
     if not size > 0:
         return worst(name, "method_study", checks + [("nothing moves", 0.0, 1.0)])
     round_off = 1e-11 * _condition(problem, step)
-    turn = 0.25 * step * _fastest(problem)
-    of_size = 1e-6 + (turn**4 / 384 if turn < 0.25 else 3 * (1 - numpy.max(numpy.abs(exact)) / size))
     for i, (label, method) in enumerate(marches.items()):
         if label not in labels:
             continue
@@ -71,15 +69,19 @@ def _listed(study, analysis):
     return found
 
 
-def _largest(problem, exact, h, row):
-    """|x| over the run: by 64 times as many samples up to behind the largest of those that are there, and a parabola."""
-    i = int(numpy.argmax(numpy.abs(exact)))
-    y = numpy.abs(problem.exact(h / 64, 64 * min(i + 1, len(exact) - 1), row))
+def _largest(problem, h, count, row):
+    """|x| over the run, by samples and a parabola over the largest of them; and what is uncertain of it, relatively: all of
+    what the samples miss where the fastest motion has more than a radian between them."""
+    parts = int(min(max(math.ceil(h * _fastest(problem) / 0.05), 8), max(MOST_SAMPLES / count, 1)))
+    y = numpy.abs(problem.exact_between(h, count, row, parts))
     k = int(numpy.argmax(y))
-    if not 0 < k < len(y) - 1:
-        return y[k]
-    bend = y[k - 1] - 2 * y[k] + y[k + 1]
-    return y[k] - (y[k + 1] - y[k - 1])**2 / (8 * bend) if bend < 0 else y[k]
+    largest = y[k]
+    if 0 < k < len(y) - 1:
+        bend = y[k - 1] - 2 * y[k] + y[k + 1]
+        largest -= (y[k + 1] - y[k - 1])**2 / (8 * bend) if bend < 0 else 0.0
+    turn = h / parts * _fastest(problem)
+    missed = turn**4 / 100 if turn < 1 else 3 * (1 - numpy.max(y[::2]) / largest) if largest > 0 else 0.0
+    return largest, 1e-6 + missed
 
 
 def _fastest(problem):

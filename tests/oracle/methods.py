@@ -129,6 +129,21 @@ class Problem:
     def exact(self, h, count, row):
         return self.march(("exponential", {}), h, count, row)
 
+    def exact_between(self, h, count, row, parts):
+        """The same with `parts` times as many samples: powers of the short step, turned to the row, on every state."""
+        T, y = self.step(("exponential", {}), h), self.start(h)
+        states = [y]
+        for _ in range(count - 1):
+            states.append(T @ states[-1])
+        short = numpy.ones(len(y))  # states of the short step hold h v and h h a of its own length
+        short[self.n:2 * self.n], short[2 * self.n:3 * self.n] = 1 / parts, 1 / parts**2
+        T = self.step(("exponential", {}), h / parts)
+        rows = [numpy.concatenate([row, numpy.zeros(len(y) - self.n)])]
+        for _ in range(parts):
+            rows.append(rows[-1] @ T)
+        states, rows = numpy.array(states) * short, numpy.array(rows)
+        return numpy.append((states @ rows[:-1].T).ravel(), states[-1] @ rows[-1])
+
     def grows(self, method, h):
         """The spectral radius of a step without loads; of one acceleration more than there are motions, too."""
         name, _ = method
