@@ -136,6 +136,21 @@ TEST(Modes, RefuseACountThatTheModelDoesNotHave) {
       "damper");
 }
 
+// 1e300 N/m on 1e-20 kg: omega^2 is beyond the largest of double. The residual of no mode at all is no cause.
+TEST(Modes, SayWhyNoneWasFound) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = testing::sparse((Matrix(2, 2) << 1e-20, 0.0, 0.0, 1.0).finished());
+  parts.stiffness = testing::sparse((Matrix(2, 2) << 1e300, -1.0, -1.0, 1.0).finished());
+  parts.damping = SparseMatrix(2, 2);
+  parts.coordinates = {"a", "b"};
+  const Recorded result = run(system::LocallyNonlinear(std::move(parts)));
+  EXPECT_EQ(result.report.status, RunStatus::failed);
+  EXPECT_EQ(result.report.message,
+            "of 2 modes of the limit free none was found: some motion has no mass beside that of the others, or a "
+            "stiffness over its mass that is beyond the largest number; give it a mass, or take stiffness and masses "
+            "that are less far apart");
+}
+
 TEST(Modes, StopBetweenTheLimitsWhenAsked) {
   const Recorded result = run(testing::damper_model(), {}, true);
   EXPECT_EQ(result.report.status, RunStatus::interrupted);

@@ -221,11 +221,7 @@ RunReport run_mechanism_modes(const std::string& name, const MechanismModesPlan&
         plan.about_equilibrium ? "begin beside it to be led to one that is" : "about = \"static\" leads to one that is",
         modes.flutters ? "flutters, which loads without a potential make" : "goes away from it");
   else if (!modes.found.has_converged)
-    report.message = fmt::format(
-        "the modes were not found to more than a few digits, the worst with a relative residual of {:.1e}; where light "
-        "or stiff parts are to be rigid, take ratios of their stiffness and mass to those of the others that are less "
-        "far from one, or joints",
-        modes.found.residual);
+    report.message = "the modes were not found to more than a few digits: " + cause_of_poor_modes(modes.found);
   else if (plan.modes.count > modes.freedoms)
     report.message =
         fmt::format("{} modes were asked for, and the joints leave {} motions", plan.modes.count, modes.freedoms);

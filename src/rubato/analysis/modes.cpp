@@ -58,11 +58,11 @@ std::string complaint(const std::vector<LimitModes>& all, Index count) {
       return fmt::format("{} of the lowest {} modes of the limit {} were not found; ask for a few more or fewer",
                          std::min(found.missing, count), count, limits[limit]);
     if (held < count || !found.has_converged)
-      return fmt::format(
-          "the modes of the limit {} were not found to more than a few digits: {} of {}, the worst with a relative "
-          "residual of {:.1e}; ask for fewer, and where light or stiff parts are to be rigid take ratios of their "
-          "stiffness and mass to those of the others that are less far from one",
-          limits[limit], held, count, found.residual);
+      return fmt::format("of {} modes of the limit {} {}: {}", count, limits[limit],
+                         held == 0      ? "none was found"
+                         : held < count ? fmt::format("{} were found", held)
+                                        : "not all were found to more than a few digits",
+                         cause_of_poor_modes(found));
   }
   return {};
 }
@@ -78,6 +78,20 @@ std::string numbers_of(const std::vector<std::size_t>& modes) {
 }
 
 }  // namespace
+
+std::string cause_of_poor_modes(const numerics::DampedModes& found) {
+  constexpr double poor = 1e-4;  // as numerics::lowest_damped_modes has it
+  if (!std::isfinite(found.defect))
+    return "some motion has no mass beside that of the others, or a stiffness over its mass that is beyond the largest "
+           "number; give it a mass, or take stiffness and masses that are less far apart";
+  if (found.defect > poor)
+    return fmt::format(
+        "the worst shape is wrong by {:.1e} of itself; ask for fewer, and where light or stiff parts are to be rigid "
+        "take ratios of their stiffness and mass to those of the others that are less far from one, or joints",
+        found.defect);
+  return "the iteration for those that dampers couple, or that lie close together, did not come to an end; ask for a "
+         "few more or fewer";
+}
 
 void tell_round_off(const std::string& title, const numerics::DampedModes& found, RunReport& report) {
   std::vector<std::size_t> rigid, poor;

@@ -31,6 +31,9 @@ struct LimitModes {
 void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
                  results::Sink& sink);
 
+/// Why modes did not converge, and what to do about it.
+std::string cause_of_poor_modes(const numerics::DampedModes& found);
+
 /// Tells, of the modes of a limit, which are at 0 Hz and whether those are rigid motions or lie below the round-off of
 /// the stiffness, and which are known to a few digits only because of it.
 /// @param title  what they are of: "limit free: ", or nothing

@@ -239,7 +239,9 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
   }
   result.missing = undamped.missing;
   result.has_converged = undamped.has_converged;
-  if (undamped.eigenvalues.size() == 0) {
+  result.defect = undamped.defect;
+  if (undamped.eigenvalues.size() == 0 || !std::isfinite(undamped.defect)) {
+    result.residual = result.defect = std::numeric_limits<double>::infinity();
     result.has_converged = false;
     return result;
   }
@@ -301,7 +303,10 @@ DampedModes lowest_damped_modes(const SparseMatrix& stiffness, const SparseMatri
     const bool is_at_zero = mode.eigenvalue == 0.0;
     mode.round_off =
         energy > 0.0 && !is_at_zero ? 2.0 * unit * all / energy * std::norm(mode.eigenvalue) : 2.0 * unit * all;
-    if (!is_at_zero && !(structure.defect(mode) <= acceptable)) result.has_converged = false;
+    if (is_at_zero) continue;
+    const double defect = structure.defect(mode);
+    result.defect = std::max(result.defect, defect);
+    if (!(defect <= acceptable)) result.has_converged = false;
   }
   result.residual = std::max(result.residual, undamped.residual);
   return result;

@@ -24,8 +24,9 @@ struct DampedMode {
 struct DampedModes {
   std::vector<DampedMode> modes;  ///< by rising angular frequency
   double residual = 0.0;          ///< largest ScaledResidual::backward of s^2 M + s C + K on a mode [-]
+  double defect = 0.0;            ///< largest ScaledResidual::of_energy: about the error of a shape [-]
   Index missing = 0;              ///< as in SymmetricModes, of the undamped modes
-  bool has_converged = true;
+  bool has_converged = true;      ///< else the best found; no modes, and an infinite defect, where M is singular
   bool is_refined = false;  ///< large model: modes of the projection on the undamped ones, then iterated to round-off
 };
 

@@ -228,6 +228,8 @@ void finish(const SparseMatrix& stiffness, const SparseMatrix& mass, const Spars
     const ScaledResidual scaled(stiff + std::abs(energy) * heavy, residual, shape);
     modes.residual = std::max(modes.residual, scaled.backward());
     modes.defect = std::max(modes.defect, scaled.of_energy(std::abs(modes.eigenvalues[j])));
+    // A motion without mass, or numbers beyond the largest: what the round-off hides would count as a rigid motion.
+    if (!std::isfinite(all)) modes.residual = modes.defect = std::numeric_limits<double>::infinity();
     modes.shapes.col(j) = shape;
   }
   modes.has_converged = modes.has_converged && modes.defect <= acceptable;

@@ -16,7 +16,9 @@ struct SymmetricModes {
   /// Eigenvalues that lie below the largest of these and were not found, counted by the inertia of K - s M; -1: the
   /// count failed. Always 0 from the dense solver, which finds all.
   Index missing = 0;
-  bool has_converged = true;  ///< else the numbers are the best found
+  /// Else the numbers are the best found, or, where the residual is infinite, none: M is singular, or numbers are too
+  /// far apart.
+  bool has_converged = true;
 };
 
 /// The `count` lowest modes, 1 <= count <= n, of symmetric K and positive definite M [n x n].

@@ -145,7 +145,9 @@ DampedModes lowest_unsymmetric_modes(const Matrix& stiffness, const Matrix& damp
   for (std::size_t i = 0; i < result.modes.size(); ++i) {
     const DampedMode& mode = result.modes[i];
     result.residual = std::max(result.residual, pencil.residual(mode).backward());
-    if (!(pencil.defect(mode) <= acceptable)) result.has_converged = false;
+    const double defect = pencil.defect(mode);
+    result.defect = std::max(result.defect, defect);
+    if (!(defect <= acceptable)) result.has_converged = false;
     // Two that came to one motion: the other one was lost.
     for (std::size_t j = 0; is_refined && j < i; ++j)
       if (is_same(result.modes[j], mode, mass)) result.has_converged = false;
