@@ -25,10 +25,12 @@ bool TimeMarchingSolver::release_offsets(const Engine& engine, Index lane, const
   const OffsetShift shift = shift_to_wanted_offsets(system_, excitation.limits, stuck, margin);
   if (shift.is_zero()) return false;
   engine.map->displace(shift.displacement, states, lane);
-  for (std::size_t a = 0; a < stuck.sliders.size(); ++a) {
-    const Index i = stuck.sliders[a];
-    states(engine.map->slip_start() + i, lane) -= shift.offset[static_cast<Index>(a)] / slider_stiffness_[i];
-  }
+  // What a slider remembers follows where it slips, so that its force stays what it was.
+  Vector slip(slider_stiffness_.size());
+  for (Index i = 0; i < slip.size(); ++i) slip[i] = system_.relative_displacement(i, shift.displacement);
+  for (std::size_t a = 0; a < stuck.sliders.size(); ++a)
+    slip[stuck.sliders[a]] = -shift.offset[static_cast<Index>(a)] / slider_stiffness_[stuck.sliders[a]];
+  states.col(lane).segment(engine.map->slip_start(), slip.size()) += slip.array();
   return true;
 }
 
