@@ -70,9 +70,11 @@ TEST(FloatingStructure, VibratesAboutWhereItWasInstalled) {
   }
 }
 
-TEST(FloatingStructure, IsNotMarchedFor) {
+TEST(FloatingStructure, IsNotMarchedForUnderLoads) {
   const auto system = floating();
-  EXPECT_THROW(TimeMarchingSolver(system, TimeMarchingOptions{}, observing({0})), InvalidInput);
+  TimeMarchingSolver marching(system, TimeMarchingOptions{}, observing({0}));
+  SteadyResponse response;
+  EXPECT_THROW(marching.solve(load(2.0), SteadyStart::unloaded, response), InvalidInput);
 }
 
 }  // namespace

@@ -44,16 +44,28 @@ void leave_out_means(SteadyResponse& response) {
     if (response.drift[o] != 0.0) response.mean[o] = response.rms[o] = not_a_number;
 }
 
+// A structure that floats, or a part of it, goes on with whatever speed the march gives it.
+void refuse_loads_on(const Matrix& free_motions, const Excitation& excitation) {
+  for (const LoadHarmonic& load : excitation.harmonics)
+    for (Index k = 0; k < free_motions.cols(); ++k) {
+      const auto motion = free_motions.col(k);
+      const double size = motion.cwiseAbs().dot(load.amplitude.cwiseAbs());
+      if (!(std::abs(motion.cast<Complex>().dot(load.amplitude)) > 1e-12 * size)) continue;
+      throw InvalidInput(
+          "the structure floats: no spring, damper, slider or stop holds it against its loads, and a march goes on "
+          "with "
+          "whatever speed it has; take solver = \"periodic\", or a spring to the ground that is soft beside the "
+          "others");
+    }
+}
+
 }  // namespace
 
 TimeMarchingSolver::TimeMarchingSolver(const system::LocallyNonlinear& system, TimeMarchingOptions options,
                                        SteadyRequest request)
     : system_(system), options_(std::move(options)), request_(std::move(request)) {
   check_options(options_, system);
-  if (free_motions(system).cols() > 0)
-    throw InvalidInput(
-        "the structure floats: no spring, damper, slider or stop holds it, and a march goes on with whatever speed it "
-        "has; take solver = \"periodic\", or a spring to the ground that is soft beside the others");
+  free_ = free_motions(system);
   if (options_.periodicity == 0.0) options_.periodicity = 0.01 * options_.tolerance;
   longest_step_ = longest_step(options_.method, system);
   resolved_frequency_ = std::holds_alternative<Exponential>(options_.method.formula) ? 0.0 : highest_frequency(system);
@@ -174,6 +186,7 @@ void TimeMarchingSolver::solve_lanes(std::span<const Excitation> excitations, St
                                      std::span<SteadyResponse> responses) {
   assert(!excitations.empty() && excitations.size() <= static_cast<std::size_t>(lanes()) &&
          excitations.size() == responses.size());
+  for (const Excitation& excitation : excitations) refuse_loads_on(free_, excitation);
   if (lanes_ && solve_with(*lanes_, excitations, start, responses)) return;
   // One after the other; the places of a list have no memory of their own here.
   for (std::size_t l = 0; l < excitations.size(); ++l) {

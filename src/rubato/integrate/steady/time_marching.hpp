@@ -79,6 +79,7 @@ class TimeMarchingSolver final : public SteadySolver {
   int order_;
   bool transitions_rule_;  ///< the error comes from transitions between the samples more than from the method
   Vector slider_stiffness_;
+  Matrix free_;                               ///< motions of a structure that floats [n x any]
   std::unique_ptr<Engine> lanes_, steppers_;  // lanes_ may be null
   const Engine* last_ = nullptr;
   int steps_ = 0;
