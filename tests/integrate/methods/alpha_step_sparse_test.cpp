@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace rubato::integrate {
 namespace {
@@ -25,9 +26,9 @@ void expect_agreement(const system::LocallyNonlinear& system) {
     double largest = 0.0;
     bool has_slipped = false;
     for (int i = 0; i < 300; ++i) {
-      const double load[] = {std::cos(0.07 * i)};
-      ASSERT_EQ(dense->solve(a, load, next_a).outcome, StepOutcome::accepted);
-      ASSERT_EQ(sparse->solve(b, load, next_b).outcome, StepOutcome::accepted);
+      const std::vector<double> load(system.loads().terms().size(), std::cos(0.07 * i));
+      ASSERT_EQ(dense->solve(a, load.data(), next_a).outcome, StepOutcome::accepted);
+      ASSERT_EQ(sparse->solve(b, load.data(), next_b).outcome, StepOutcome::accepted);
       std::swap(a, next_a);
       std::swap(b, next_b);
       largest = std::max(largest, a.q.cwiseAbs().maxCoeff());
