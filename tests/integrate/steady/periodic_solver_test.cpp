@@ -80,6 +80,31 @@ TEST(PeriodicSolver, IsTheLinearResponseWithoutFriction) {
   }
 }
 
+// Den Hartog 1931, eq. 9: the amplitude of a mass on dry friction that never stops, the limit of a contact that is ever
+// stiffer. The friction turns within sqrt(m / kT), by which amplitudes differ.
+TEST(PeriodicSolver, FollowsContactsThatAreNearlyRigid) {
+  const double limit = 0.3;
+  for (const double stiffness : {1e8, 1e10, 1e12})
+    for (const double r : {0.65, 0.8, 1.3}) {
+      SCOPED_TRACE(::testing::Message() << "kT = " << stiffness << " N/m, " << r << " rad/s");
+      system::LocallyNonlinear::Parts parts;
+      parts.mass = parts.stiffness = testing::sparse(Matrix::Identity(1, 1));
+      parts.damping = testing::sparse(Matrix::Zero(1, 1));
+      parts.sliders = {{"contact", 0, ground, stiffness, limit}};
+      parts.loads = system::Loads({testing::harmonic(0, 1.0, r)});
+      parts.coordinates = {"mass"};
+      const SteadyResponse response = solve(system::LocallyNonlinear(std::move(parts)), {{{0}}});
+      const double response_function = 1.0 / (1.0 - r * r);
+      const double half_turn = std::numbers::pi / r;
+      const double damping_function = std::sin(half_turn) / (r * (1.0 + std::cos(half_turn)));
+      EXPECT_EQ(response.status, SteadyStatus::converged);
+      EXPECT_NEAR(
+          response.amplitude[0],
+          std::abs(response_function) * std::sqrt(1.0 - std::pow(limit * damping_function / response_function, 2)),
+          0.5 / std::sqrt(stiffness));
+    }
+}
+
 TEST(PeriodicSolver, SaysThatAResonanceWithoutDampingIsUnbounded) {
   const SteadyResponse r = solve(single_mass(0.0, 1.0, 0.0), {{{0}}, {1}});
   EXPECT_EQ(r.status, SteadyStatus::unbounded);

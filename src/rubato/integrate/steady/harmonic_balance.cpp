@@ -176,13 +176,6 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   s.equations.front().displacement_and_force(s.series, s.past.front().motion.displacement, s.past.front().motion.force);
 }
 
-// A structure that sliders alone hold is in balance as well so far away that their forces are lost in round-off.
-bool HarmonicBalanceSolver::Implementation::resolves_slider_forces(const Excitation& excitation) const {
-  for (Index j = 0; j < stiffness.size(); ++j)
-    if (!is_slider_force_resolved(stiffness[j], series.mean[j], excitation.limits[j])) return false;
-  return true;
-}
-
 // Balances more and more orders. What it leaves is the balance of the most orders that Newton's method solved, with its
 // error; has_answer is false where there is none.
 bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation, Effort effort,
@@ -221,7 +214,9 @@ bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation
       has_start = predict(excitation.angular_frequency, orders, !is_symmetric);
     }
     series.resize(orders, !is_symmetric, m);
-    if (!newton(excitation, has_start, has_solution, effort, response) || !resolves_slider_forces(excitation)) {
+    // A structure that sliders alone hold seems to be in balance very far away.
+    if (!newton(excitation, has_start, has_solution, effort, response) ||
+        !are_slider_forces_resolved(system, excitation, series.mean)) {
       if (has_solution) response.residual = return_to(solution, compliance, excitation);
       return false;
     }

@@ -38,7 +38,6 @@ struct HarmonicBalanceSolver::Implementation {
   bool is_driven_beyond_friction(const Excitation& excitation);
   int orders_to_probe(const Excitation& excitation, const Orders& orders) const;
   bool attempt(const Excitation& excitation, Effort effort, SteadyResponse& response);
-  bool resolves_slider_forces(const Excitation& excitation) const;
   bool predict(double angular_frequency, const Orders& orders, bool with_mean);
   bool newton(const Excitation& excitation, bool has_start, bool has_solution, Effort effort, SteadyResponse& response);
   bool solve_from(const Excitation& excitation, bool has_start, bool has_solution, int& iterations);

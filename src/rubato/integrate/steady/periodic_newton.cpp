@@ -35,19 +35,12 @@ class PeriodicSolver::Recorder final : public ExactVisitor {
   long left_;
 };
 
-// A step of Newton may lead so far away that the forces of sliders, which are differences of displacements, are lost in
-// round-off: they would slip and stick by it without end.
-bool PeriodicSolver::resolves_slider_forces(const Excitation& excitation) const {
-  for (Index i = 0; i < m_; ++i)
-    if (!is_slider_force_resolved(system_.sliders()[static_cast<std::size_t>(i)].stiffness,
-                                  system_.relative_displacement(i, y_.head(n_)), excitation.limits[i]))
-      return false;
-  return true;
-}
-
 // One pass of the flow from y_, over a period or half of it: orbit and P(y) - y.
 bool PeriodicSolver::pass(const Excitation& excitation) {
-  if (!resolves_slider_forces(excitation)) return false;
+  // A step of Newton may lead so far away that sliders would slip and stick by round-off, without end.
+  Vector displacements(m_);
+  for (Index i = 0; i < m_; ++i) displacements[i] = system_.relative_displacement(i, y_.head(n_));
+  if (!are_slider_forces_resolved(system_, excitation, displacements)) return false;
   start_.t = 0.0;
   start_.q = y_.head(n_);
   start_.v = y_.segment(n_, n_);

@@ -64,7 +64,6 @@ class PeriodicSolver final : public SteadySolver {
   void predict(const Excitation& excitation);
   void march_from_rest(const Excitation& excitation);
   bool march(const Excitation& excitation, int periods);
-  bool resolves_slider_forces(const Excitation& excitation) const;
   bool pass(const Excitation& excitation);
   double residual(const Excitation& excitation);
   void factorise();

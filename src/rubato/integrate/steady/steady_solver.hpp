@@ -2,8 +2,6 @@
 
 #include <rubato/integrate/steady/excitation.hpp>
 
-#include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -85,13 +83,10 @@ class SteadySolver {
   virtual void forget() = 0;
 };
 
-/// Whether the force of a slider, a difference of displacements, is known to 1e-8 of its limit: very far away it is
-/// lost in round-off.
-/// @param displacement  u [m]
-inline bool is_slider_force_resolved(double stiffness, double displacement, double limit) {
-  constexpr double least_resolution = 1e-8;
-  const double round_off = std::numeric_limits<double>::epsilon() * stiffness * std::abs(displacement);
-  return limit == 0.0 || round_off <= least_resolution * limit;
-}
+/// Whether sliders are so near that what springs and inertia do at their ends, K u + w^2 M u, is known to 1e-8 of their
+/// limits. Far away, where round-off is as large as a limit, any motion seems to be one that repeats.
+/// @param displacements  u of every slider [m] [m]
+bool are_slider_forces_resolved(const system::LocallyNonlinear& system, const Excitation& excitation,
+                                const Vector& displacements);
 
 }  // namespace rubato::integrate

@@ -52,10 +52,8 @@ void refuse_loads_on(const Matrix& free_motions, const Excitation& excitation) {
       const double size = motion.cwiseAbs().dot(load.amplitude.cwiseAbs());
       if (!(std::abs(motion.cast<Complex>().dot(load.amplitude)) > 1e-12 * size)) continue;
       throw InvalidInput(
-          "the structure floats: no spring, damper, slider or stop holds it against its loads, and a march goes on "
-          "with "
-          "whatever speed it has; take solver = \"periodic\", or a spring to the ground that is soft beside the "
-          "others");
+          "nothing holds the structure against its loads (it floats), and a march keeps whatever speed it has; take "
+          "solver = \"periodic\", or a spring to the ground that is soft beside the others");
     }
 }
 
