@@ -14,15 +14,16 @@ double stored_in_stop(const system::LocallyNonlinear& system, Index stop, const 
 
 }  // namespace
 
-SupportWork::SupportWork(const system::LocallyNonlinear& system)
-    : system_(system), equilibrium_(system), acceleration_(system.size()) {}
+SupportWork::SupportWork(const system::LocallyNonlinear& system, integrate::Balance& balance)
+    : system_(system), balance_(balance) {}
 
 void SupportWork::go_to(const system::State& state, model::Side side, End& end) {
   const system::MovingSupports& supports = *system_.supports();
-  equilibrium_(state, acceleration_, side);
+  balanced_ = state;
+  balance_.find_acceleration(balanced_, side);
   supports.extend(state.t, side, state.q, end.q, 0);
   supports.extend(state.t, side, state.v, end.v, 1);
-  supports.extend(state.t, side, acceleration_, end.a, 2);
+  supports.extend(state.t, side, balanced_.acceleration, end.a, 2);
   supports.reaction(state.t, side, end.q, end.v, end.a, end.reaction);
   end.load.resize(supports.size());
   supports.loads().evaluate(state.t, end.load, side);
@@ -64,9 +65,9 @@ Energy energy_of(const system::LocallyNonlinear& system, const system::State& st
   return energy;
 }
 
-EnergyLedger::EnergyLedger(const system::LocallyNonlinear& system)
+EnergyLedger::EnergyLedger(const system::LocallyNonlinear& system, integrate::Balance& balance)
     : system_(system), loads_(system.loads()), travel_(system.size()), product_(system.size()), force_(system.size()) {
-  if (system.supports()) supports_.emplace(system);
+  if (system.supports()) supports_.emplace(system, balance);
 }
 
 void EnergyLedger::start(const system::State& state) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/balance.hpp>
 #include <rubato/integrate/load_values.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -10,7 +11,7 @@ namespace rubato::analysis {
 /// What supports that move do in a step. A workspace.
 class SupportWork {
  public:
-  explicit SupportWork(const system::LocallyNonlinear& system);
+  SupportWork(const system::LocallyNonlinear& system, integrate::Balance& balance);
 
   struct Work {
     double damper;  ///< dissipated beyond what the free coordinates alone would
@@ -26,8 +27,8 @@ class SupportWork {
   void go_to(const system::State& state, model::Side side, End& end);
 
   const system::LocallyNonlinear& system_;
-  system::EquilibriumAcceleration equilibrium_;
-  Vector acceleration_;
+  integrate::Balance& balance_;
+  system::State balanced_;
   End before_, after_;
 };
 
@@ -63,7 +64,7 @@ struct Energy {
 /// which a stop closes without being located leaves its share of the work in the residue.
 class EnergyLedger {
  public:
-  explicit EnergyLedger(const system::LocallyNonlinear& system);
+  EnergyLedger(const system::LocallyNonlinear& system, integrate::Balance& balance);
 
   void start(const system::State& state);
   /// Adds a step to the sums.

@@ -2,6 +2,7 @@
 #include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/structure_balance.hpp>
 
 #include <fmt/format.h>
 
@@ -100,7 +101,8 @@ void check_exact_transient(const Location& where, const system::LocallyNonlinear
 RunReport run_exact_transient(const std::string& name, const TransientPlan& plan,
                               const system::LocallyNonlinear& system, RunContext& context) {
   integrate::ExactFlow flow(system);
-  TransientRecorder recorder(name, plan, system, context.sink);
+  integrate::StructureBalance balance(system);
+  TransientRecorder recorder(name, plan, system, balance, context.sink);
   ExactRecorder visitor(plan, system, recorder, context);
   const double interval = plan.output == Kind::interval ? plan.interval : default_interval(system);
   const double round_off = 1e-12 * plan.duration;

@@ -24,10 +24,10 @@ double lagrange_weight(std::span<const double> times, std::size_t i, double t) {
   return weight;
 }
 
-StepInterpolation::StepInterpolation(const system::System& system, std::unique_ptr<integrate::Balance> balance,
-                                     int order, std::vector<double> kinks)
+StepInterpolation::StepInterpolation(const system::System& system, integrate::Balance& balance, int order,
+                                     std::vector<double> kinks)
     : system_(system),
-      balance_(std::move(balance)),
+      balance_(balance),
       is_quintic_(order > 2 && system.is_flat()),
       kinks_(std::move(kinks)),
       travel_(system.size()),
@@ -50,7 +50,7 @@ bool StepInterpolation::goes_on(const system::State& before) {
   const system::State& last = knot(0).state;
   return last.t == before.t && last.v == before.v && last.slider_force == before.slider_force &&
          last.phase == before.phase && last.rubbing == before.rubbing && last_acceleration_ == before.acceleration &&
-         !balance_->loads_jump(before.t);
+         !balance_.loads_jump(before.t);
 }
 
 void StepInterpolation::take(const system::State& before, const system::State& after) {
@@ -79,7 +79,7 @@ void StepInterpolation::at(double t, system::State& state) {
   const std::size_t count = usable();
   for (std::size_t age = 0; age < count; ++age) {
     Knot& end = knot(age);
-    if (!end.is_balanced) balance_->find_acceleration(end.state, end.side);
+    if (!end.is_balanced) balance_.find_acceleration(end.state, end.side);
     end.is_balanced = true;
   }
   const system::State& before = knot(1).state;
@@ -89,8 +89,8 @@ void StepInterpolation::at(double t, system::State& state) {
     through_ends(t, state);
   else
     through_knots(count, t, state);
-  balance_->find_contact_forces(before, state);
-  if (is_quintic_) balance_->find_acceleration(state, model::Side::left);
+  balance_.find_contact_forces(before, state);
+  if (is_quintic_) balance_.find_acceleration(state, model::Side::left);
 }
 
 void StepInterpolation::through_knots(std::size_t count, double t, system::State& state) {
@@ -118,7 +118,7 @@ void StepInterpolation::through_knots(std::size_t count, double t, system::State
     add_share(age == 0, weight, knot(age).state.acceleration, state.acceleration);
     add_share(age == 0, weight, knot(age).state.multiplier, state.multiplier);
   }
-  balance_->add_swing_of_loads({ends.data(), smooth}, state);
+  balance_.add_swing_of_loads({ends.data(), smooth}, state);
 }
 
 void StepInterpolation::through_ends(double t, system::State& state) {

@@ -4,7 +4,6 @@
 #include <rubato/system/system.hpp>
 
 #include <array>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,10 +27,10 @@ double lagrange_weight(std::span<const double> times, std::size_t i, double t);
 /// ends; between them to the error of the interpolation.
 class StepInterpolation {
  public:
-  /// @param balance  of that system
+  /// @param balance  of that system; must outlive this
   /// @param order    of the method
   /// @param kinks    times at which steps end since a load, a drive or a law may have a kink there, rising [s]
-  StepInterpolation(const system::System& system, std::unique_ptr<integrate::Balance> balance, int order,
+  StepInterpolation(const system::System& system, integrate::Balance& balance, int order,
                     std::vector<double> kinks = {});
 
   /// Takes an accepted step; every step of the march must be given.
@@ -57,7 +56,7 @@ class StepInterpolation {
   void through_ends(double t, system::State& state);
 
   const system::System& system_;
-  std::unique_ptr<integrate::Balance> balance_;
+  integrate::Balance& balance_;
   bool is_quintic_;
   std::array<Knot, most_knots> knots_;
   std::vector<double> kinks_;

@@ -1,16 +1,16 @@
 #include <rubato/analysis/mechanism_ledger.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 namespace rubato::analysis {
 
 using Role = model::Element::Role;
 
-MechanismLedger::MechanismLedger(const system::Mechanism& mechanism)
-    : mechanism_(mechanism),
-      equations_(mechanism),
-      travel_(mechanism.size()),
-      force_(mechanism.size()),
-      product_(mechanism.size()) {}
+MechanismLedger::MechanismLedger(integrate::MechanismBalance& balance)
+    : mechanism_(balance.equations().mechanism()),
+      balance_(balance),
+      equations_(balance.equations()),
+      travel_(mechanism_.size()),
+      force_(mechanism_.size()),
+      product_(mechanism_.size()) {}
 
 double MechanismLedger::kinetic(const system::State& state) {
   mechanism_.times_mass(state.v, product_);
@@ -51,8 +51,7 @@ MechanismLedger::Booking MechanismLedger::booking(const system::State& before, c
   if (mechanism_.model().drives.empty()) return booked;
   for (const bool is_end : {false, true}) {
     balanced_ = is_end ? after : before;
-    const model::Side side = is_end ? model::Side::left : model::Side::right;
-    if (!integrate::find_acceleration(equations_, balanced_, side)) balanced_ = is_end ? after : before;
+    balance_.find_acceleration(balanced_, is_end ? model::Side::left : model::Side::right);
     for (const auto& drive : mechanism_.model().drives) {
       const double change = model::derivatives(drive.law, after.t, model::Side::left).value -
                             model::derivatives(drive.law, before.t, model::Side::right).value;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/system/mechanism_equations.hpp>
+#include <rubato/integrate/mechanism/mechanism_balance.hpp>
 
 namespace rubato::analysis {
 
@@ -33,7 +33,7 @@ struct MechanismEnergy {
 /// stop still held as it let go.
 class MechanismLedger {
  public:
-  explicit MechanismLedger(const system::Mechanism& mechanism);
+  explicit MechanismLedger(integrate::MechanismBalance& balance);
 
   void start(const system::State& state);
   /// @param impulsive_work  of the drives so far, between steps [J]
@@ -52,7 +52,8 @@ class MechanismLedger {
   double strain(const system::State& state);
 
   const system::Mechanism& mechanism_;
-  system::MechanismEquations equations_;
+  integrate::MechanismBalance& balance_;
+  system::MechanismEquations& equations_;
   Vector travel_, force_, product_;
   system::State balanced_;
   MechanismEnergy sums_;

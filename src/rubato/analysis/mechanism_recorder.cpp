@@ -1,5 +1,4 @@
 #include <rubato/analysis/mechanism_recorder.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <fmt/format.h>
 
@@ -16,15 +15,14 @@ results::Block scalar(const std::string& variable, const std::string& unit, cons
 }  // namespace
 
 MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPlan& plan,
-                                     const system::Mechanism& mechanism, results::Sink& sink)
-    : mechanism_(mechanism),
-      joints_(mechanism),
+                                     integrate::MechanismBalance& balance, results::Sink& sink)
+    : joints_(balance.equations().mechanism()),
       observed_(joints_.with_angles(plan.transient.observed)),
-      reactions_(mechanism),
-      frictions_(mechanism),
-      laws_(mechanism),
-      beams_(mechanism, plan.section_forces, ""),
-      equations_(mechanism) {
+      reactions_(balance.equations().mechanism()),
+      frictions_(balance.equations().mechanism()),
+      laws_(balance.equations().mechanism()),
+      beams_(balance.equations().mechanism(), plan.section_forces, ""),
+      balance_(balance) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time = scalar("time", "s", "time");
   results::TableLayout layout{name,
@@ -59,31 +57,9 @@ MechanismRecorder::MechanismRecorder(const std::string& name, const MechanismPla
                  {{"type", "energy"}}});
 }
 
-void MechanismRecorder::balance(const system::State& state) {
-  balanced_ = state;
-  if (!integrate::find_acceleration(equations_, balanced_, model::Side::right)) balanced_ = state;
-  // A load that jumps there lets a joint go in this instant: it has held until now.
-  equations_.go_to(balanced_, model::Side::right);
-  constexpr double round_off = 1e-6;
-  for (std::size_t i = 0; i < state.rubbing.size(); ++i) {
-    if (state.rubbing[i] != model::friction_sticks) continue;
-    const double excess = equations_.friction_size(i, balanced_.multiplier) -
-                          (1.0 + round_off) * equations_.friction_limit(i, balanced_.multiplier);
-    if (!(excess > equations_.negligible_friction(i))) continue;
-    const Vector multiplier = balanced_.multiplier, acceleration = balanced_.acceleration;
-    balanced_ = state;
-    if (integrate::find_acceleration(equations_, balanced_, model::Side::left)) return;
-    balanced_.multiplier = multiplier;
-    balanced_.acceleration = acceleration;
-    return;
-  }
-}
-
 void MechanismRecorder::record(const system::State& state, const MechanismEnergy* energy, bool is_balanced) {
-  if (is_balanced)
-    balanced_ = state;
-  else
-    balance(state);
+  balanced_ = state;
+  if (!is_balanced) balance_.find_shown_acceleration(balanced_);
   joints_.go_to(state);
   joints_.positions(positions_);
   joints_.velocities(velocities_);
@@ -93,8 +69,8 @@ void MechanismRecorder::record(const system::State& state, const MechanismEnergy
   observed_.append({&positions_, &velocities_, &accelerations_}, row_);
   joints_.append_displacements(row_);
   reactions_.append(joints_.motion(), balanced_.multiplier, row_);
-  equations_.go_to(balanced_, model::Side::right);
-  frictions_.append(equations_, joints_.motion(), balanced_.multiplier, row_);
+  balance_.equations().go_to(balanced_, model::Side::right);
+  frictions_.append(balance_.equations(), joints_.motion(), balanced_.multiplier, row_);
   laws_.append(joints_.motion(), row_);
   beams_.append(joints_.motion(), row_);
   rows_->append(row_);

@@ -8,6 +8,7 @@
 #include <rubato/analysis/mechanism_ledger.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/analysis/observed_blocks.hpp>
+#include <rubato/integrate/mechanism/mechanism_balance.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 #include <rubato/results/sink.hpp>
 
@@ -24,7 +25,7 @@ namespace rubato::analysis {
 /// a step carry what the constraints do to velocities that have drifted, over the length of that step.
 class MechanismRecorder {
  public:
-  MechanismRecorder(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
+  MechanismRecorder(const std::string& name, const MechanismPlan& plan, integrate::MechanismBalance& balance,
                     results::Sink& sink);
 
   /// @param energy  null without a ledger
@@ -33,17 +34,13 @@ class MechanismRecorder {
   long rows() const { return count_; }
 
  private:
-  /// The state with the accelerations and multipliers of equilibrium.
-  void balance(const system::State& state);
-
-  const system::Mechanism& mechanism_;
   JointCoordinates joints_;
   ObservedBlocks observed_;
   JointReactions reactions_;
   JointFrictions frictions_;
   JointLaws laws_;
   BeamSectionForces beams_;
-  system::MechanismEquations equations_;
+  integrate::MechanismBalance& balance_;
   system::State balanced_;
   Vector positions_, velocities_, accelerations_;
   std::vector<double> row_;

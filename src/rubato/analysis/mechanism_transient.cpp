@@ -15,17 +15,17 @@ namespace {
 
 class MechanismBooks final : public TransientBooks {
  public:
-  MechanismBooks(const TransientPlan& plan, const system::Mechanism& mechanism, MechanismRecorder& recorder,
+  MechanismBooks(const TransientPlan& plan, integrate::MechanismBalance& balance, MechanismRecorder& recorder,
                  const integrate::MechanismTimeline& timeline)
       : keeps_energy_(plan.energy),
-        mechanism_(mechanism),
+        mechanism_(balance.equations().mechanism()),
         recorder_(recorder),
         timeline_(timeline),
-        ledger_(mechanism),
-        equations_(mechanism),
-        drift_(mechanism.constraint_count()),
-        way_(mechanism.size()),
-        momentum_(mechanism.size()) {}
+        ledger_(balance),
+        equations_(balance.equations()),
+        drift_(mechanism_.constraint_count()),
+        way_(mechanism_.size()),
+        momentum_(mechanism_.size()) {}
 
   void start(const system::State& state) override {
     ledger_.start(state);
@@ -69,7 +69,7 @@ class MechanismBooks final : public TransientBooks {
   MechanismRecorder& recorder_;
   const integrate::MechanismTimeline& timeline_;
   MechanismLedger ledger_;
-  system::MechanismEquations equations_;
+  system::MechanismEquations& equations_;
   Vector drift_;
   double largest_drift_ = 0.0;
   Vector from_, way_, momentum_;
@@ -158,12 +158,12 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
     return failed;
   }
   MechanismMarch march(plan, mechanism);
-  MechanismRecorder recorder(name, plan, mechanism, context.sink);
-  MechanismBooks books(transient, mechanism, recorder, march.timeline());
+  integrate::MechanismBalance balance(mechanism);
+  MechanismRecorder recorder(name, plan, balance, context.sink);
+  MechanismBooks books(transient, balance, recorder, march.timeline());
   constexpr long steps_a_report = 64;
   TransientObserver observer(transient, books,
-                             StepInterpolation(mechanism, integrate::make_balance(mechanism),
-                                               integrate::find_method(transient.method.name).order,
+                             StepInterpolation(mechanism, balance, integrate::find_method(transient.method.name).order,
                                                march.timeline().breakpoints(transient.start.t, transient.duration)),
                              steps_a_report, context);
   context.progress.begin(name, transient.duration, "s of motion");

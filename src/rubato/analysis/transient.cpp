@@ -4,6 +4,7 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/load_jumps.hpp>
+#include <rubato/integrate/structure_balance.hpp>
 
 #include <fmt/format.h>
 
@@ -14,8 +15,9 @@ namespace {
 
 class StructureBooks final : public TransientBooks {
  public:
-  StructureBooks(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder)
-      : keeps_energy_(plan.energy), recorder_(recorder), ledger_(system) {}
+  StructureBooks(const TransientPlan& plan, const system::LocallyNonlinear& system, integrate::Balance& balance,
+                 TransientRecorder& recorder)
+      : keeps_energy_(plan.energy), recorder_(recorder), ledger_(system, balance) {}
 
   void start(const system::State& state) override { ledger_.start(state); }
 
@@ -100,13 +102,13 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   if (std::holds_alternative<integrate::Exact>(plan.method.formula))
     return run_exact_transient(name, plan, system, context);
   const auto stepper = integrate::make_stepper(plan.method, system);
-  TransientRecorder recorder(name, plan, system, context.sink);
-  StructureBooks books(plan, system, recorder);
+  integrate::StructureBalance balance(system);
+  TransientRecorder recorder(name, plan, system, balance, context.sink);
+  StructureBooks books(plan, system, balance, recorder);
   const long steps_a_report = system.size() > 1000 ? 1 : 256;
-  TransientObserver observer(
-      plan, books,
-      StepInterpolation(system, integrate::make_balance(system), integrate::find_method(plan.method.name).order),
-      steps_a_report, context);
+  TransientObserver observer(plan, books,
+                             StepInterpolation(system, balance, integrate::find_method(plan.method.name).order),
+                             steps_a_report, context);
   system::State state = integrate::consistent_start(system, plan.start);
   RunReport run;
   run.warnings = plan.warnings;

@@ -33,13 +33,9 @@ results::Block scalar(const std::string& variable, const std::string& descriptio
 }  // namespace
 
 TransientRecorder::TransientRecorder(const std::string& name, const TransientPlan& plan,
-                                     const system::LocallyNonlinear& system, results::Sink& sink)
-    : system_(system),
-      observed_(plan.observed),
-      sliders_(system),
-      stops_(system),
-      equilibrium_(system),
-      acceleration_(system.size()) {
+                                     const system::LocallyNonlinear& system, integrate::Balance& balance,
+                                     results::Sink& sink)
+    : system_(system), observed_(plan.observed), sliders_(system), stops_(system), balance_(balance) {
   using Quantity = ObservedBlocks::Quantity;
   const results::Block time{"time", "s", "time", "", {}};
   results::TableLayout layout{name, "", "time", {time}, attributes_of(plan, system)};
@@ -85,7 +81,7 @@ void TransientRecorder::append_supports(const system::State& state) {
   const auto side = model::Side::right;
   supports.extend(state.t, side, state.q, q_, 0);
   supports.extend(state.t, side, state.v, v_, 1);
-  supports.extend(state.t, side, acceleration_, a_, 2);
+  supports.extend(state.t, side, state.acceleration, a_, 2);
   supports.reaction(state.t, side, q_, v_, a_, reaction_);
   observed_.append({&q_, &v_, &a_}, row_);
   sliders_.append(state, row_);
@@ -96,16 +92,14 @@ void TransientRecorder::append_supports(const system::State& state) {
 }
 
 void TransientRecorder::record(const system::State& state, const Energy* energy, bool is_balanced) {
-  if (is_balanced)
-    acceleration_ = state.acceleration;
-  else
-    equilibrium_(state, acceleration_);
+  shown_ = state;
+  if (!is_balanced) balance_.find_shown_acceleration(shown_);
   row_.clear();
   row_.push_back(state.t);
   if (system_.supports()) {
-    append_supports(state);
+    append_supports(shown_);
   } else {
-    observed_.append({&state.q, &state.v, &acceleration_}, row_);
+    observed_.append({&state.q, &state.v, &shown_.acceleration}, row_);
     sliders_.append(state, row_);
     stops_.append(state, row_);
   }

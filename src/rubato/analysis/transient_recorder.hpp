@@ -4,6 +4,7 @@
 #include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/transient_plan.hpp>
+#include <rubato/integrate/balance.hpp>
 
 #include <memory>
 #include <string>
@@ -16,7 +17,7 @@ namespace rubato::analysis {
 class TransientRecorder {
  public:
   TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
-                    results::Sink& sink);
+                    integrate::Balance& balance, results::Sink& sink);
 
   /// @param energy  null without a ledger
   /// @param is_balanced  the acceleration of the state is that to tell: between the ends of a step
@@ -32,8 +33,8 @@ class TransientRecorder {
   ObservedBlocks observed_;
   SliderBlocks sliders_;
   StopBlocks stops_;
-  system::EquilibriumAcceleration equilibrium_;
-  Vector acceleration_;
+  integrate::Balance& balance_;
+  system::State shown_;
   Vector q_, v_, a_, reaction_;  // of all coordinates, where supports move
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <rubato/system/locally_nonlinear.hpp>
-#include <rubato/system/mechanism.hpp>
+#include <rubato/model/time_law.hpp>
+#include <rubato/system/state.hpp>
 
-#include <memory>
 #include <span>
 
 namespace rubato::integrate {
@@ -16,7 +15,7 @@ struct WeighedEnd {
 };
 
 /// What follows from the configuration and the velocities of a state by the equations of its system. A workspace: one
-/// a march.
+/// a march, lent to all that looks at its states.
 class Balance {
  public:
   virtual ~Balance() = default;
@@ -25,6 +24,10 @@ class Balance {
   /// there are none.
   /// @param side  which limit to take of loads that jump at state.t
   virtual void find_acceleration(system::State& state, model::Side side) = 0;
+
+  /// The same with the values that a row at the end of a step shows: from this instant on, unless a load jumps there
+  /// and lets a joint go at once, which has held until then.
+  virtual void find_shown_acceleration(system::State& state) { find_acceleration(state, model::Side::right); }
 
   /// Adds to acceleration and multiplier, which a polynomial gives, what loads and drives do at state.t beyond the
   /// polynomial of what they do at the ends, all of it at the configuration and the velocities of the state: the
@@ -37,9 +40,5 @@ class Balance {
   /// Sets the forces of sliders and stops at a state that the motion from `before` reaches without turning back.
   virtual void find_contact_forces(const system::State& before, system::State& state) const = 0;
 };
-
-/// The system must outlive its balance.
-std::unique_ptr<Balance> make_balance(const system::LocallyNonlinear& system);
-std::unique_ptr<Balance> make_balance(const system::Mechanism& mechanism);
 
 }  // namespace rubato::integrate
