@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/numerics/newton.hpp>
 #include <rubato/system/mechanism_equations.hpp>
 
 #include <fmt/format.h>
@@ -27,6 +28,9 @@ class MechanismStepper final : public Stepper {
       has_slip_ = has_slip_ || friction.partner >= 0;
     }
     is_smooth_ = is_smooth_ && !has_followed_reactions_ && !has_slip_;
+    rules_.most_iterations = plan.most_iterations;
+    rules_.keep_below = 0.1;
+    if (!has_slip_) rules_.diverged_above = 2.0;
     tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
                                    : mechanism.reference() > 0.0 ? mechanism.reference()
                                                                  : std::sqrt(mechanism.mass().diagonal().sum()));
@@ -51,76 +55,102 @@ class MechanismStepper final : public Stepper {
     to.reaction_lag = from.reaction_lag;
     equations_.exceed_multipliers(from.reaction_lag, h);
     predict(from, h);
-    bool is_fresh = false;  // the factors are those of the last iterate
-    bool needs_factors = true;
-    bool is_wary = false;
-    double last = 0.0;
-    for (int iteration = 0; iteration < plan_.most_iterations; ++iteration) {
-      place(from, h, to);
-      equations_.go_to(to, model::Side::left);
-      if (needs_factors) {
-        equations_.linearise({1.0, mean * p_.gamma * h, scale_, 0.0, true, is_wary}, to.multiplier, force_,
-                             constraint_);
-        is_fresh = true;
-        if (!equations_.factorise()) return fault(StepOutcome::singular);
-        needs_factors = false;
-      } else {
-        equations_.residual(force_, constraint_);
-        is_fresh = false;
-      }
-      // Multipliers start from zero: what the constraints do not determine of them stays out.
-      if (iteration == 0)
-        to.multiplier.setZero();
-      else
-        equations_.add_constraint_force(to.multiplier, 1.0, force_);
-      mechanism_.times_mass(to.acceleration, product_);
-      force_ = -scale_ * (force_ + product_);
-      constraint_ = -constraint_;
-      equations_.solve(force_, constraint_);
-      mechanism_.times_mass(force_, product_);
-      const double size = std::sqrt(force_.dot(product_));
-      if (!std::isfinite(size)) return fault(StepOutcome::not_finite);
-      to.multiplier += (1.0 / scale_) * constraint_;
-      // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
-      const double ratio = iteration > 0 ? size / last : first_ratio(from, size);
-      if (iteration == 0) {
-        to.contraction = growth * from.contraction;
-        to.correction = from.correction;
-      } else if (iteration == 1) {
-        to.contraction = safety * ratio;
-        to.correction = last;
-      }
-      const bool is_noise = iteration > 0 && size <= noise * tolerance_;
-      const double before = ratio < 1.0 ? size / (1.0 - ratio)  // the error without this correction
-                            : is_noise  ? size
-                                        : HUGE_VAL;
-      const bool is_placed = iteration > 0 && before <= negligible * tolerance_;
-      if (!is_placed) {
-        mechanism_.to_travel(travel_, force_);
-        travel_ += force_;
-      }
-      if (ratio * before <= tolerance_) {
-        double apart = 0.0;
-        const Index worst = equations_.worst_leak(constraint_, apart);
-        if (apart > most_apart * (1.0 + from.q.cwiseAbs().maxCoeff())) return {StepOutcome::overdetermined, worst};
-        // Where rows repeat each other always, those that do so at one time only are not told apart from them.
-        const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.hardly_held_rows() == 0;
-        return is_held ? finish(from, h, is_placed, to) : fault(StepOutcome::singular);
-      }
-      if (iteration > 0) {
-        if (is_fresh && ratio > 2.0 && !has_slip_) return fault(StepOutcome::not_converged);
-        needs_factors = ratio > 0.1;
-        is_wary = has_slip_ && !is_wary && ratio > 0.5;  // the direction of a slow slip turned too far
-      }
-      last = size;
+    Iterates iterates{*this, from, h, to};
+    switch (numerics::newton(iterates, rules_).outcome) {
+      case numerics::NewtonOutcome::converged:
+        break;
+      case numerics::NewtonOutcome::singular:
+        return fault(StepOutcome::singular);
+      case numerics::NewtonOutcome::not_finite:
+        return fault(StepOutcome::not_finite);
+      default:
+        return fault(StepOutcome::not_converged);
     }
-    return fault(StepOutcome::not_converged);
+    double apart = 0.0;
+    const Index worst = equations_.worst_leak(constraint_, apart);
+    if (apart > most_apart * (1.0 + from.q.cwiseAbs().maxCoeff())) return {StepOutcome::overdetermined, worst};
+    // Where rows repeat each other always, those that do so at one time only are not told apart from them.
+    const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.hardly_held_rows() == 0;
+    return is_held ? finish(from, h, iterates.is_placed, to) : fault(StepOutcome::singular);
   }
 
   double shift() const override { return p_.alpha_m - p_.alpha_f; }
   int factorisations() const override { return equations_.factorisations(); }
 
  private:
+  /// The equations of the step as Newton's method sees them. The iterate is the travel and, in `to`, the multipliers;
+  /// corrections are measured in the mass norm. After it has converged constraint_ holds the last correction of the
+  /// scaled multipliers.
+  struct Iterates : numerics::NewtonProblem {
+    Iterates(MechanismStepper& of, const system::State& from_, double h_, system::State& to_)
+        : s(of), from(from_), h(h_), to(to_) {}
+
+    double evaluate(bool with_tangent) {
+      s.place(from, h, to);
+      s.equations_.go_to(to, model::Side::left);
+      if (with_tangent) {
+        const double mean = (1.0 - s.p_.alpha_f) / (1.0 - s.p_.alpha_m);
+        s.equations_.linearise({1.0, mean * s.p_.gamma * h, s.scale_, 0.0, true, is_wary}, to.multiplier, s.force_,
+                               s.constraint_);
+      } else {
+        s.equations_.residual(s.force_, s.constraint_);
+      }
+      return 0.0;
+    }
+
+    bool factorise() { return s.equations_.factorise(); }
+
+    double correct() {
+      // Multipliers start from zero: what the constraints do not determine of them stays out.
+      if (is_first)
+        to.multiplier.setZero();
+      else
+        s.equations_.add_constraint_force(to.multiplier, 1.0, s.force_);
+      is_first = false;
+      s.mechanism_.times_mass(to.acceleration, s.product_);
+      s.force_ = -s.scale_ * (s.force_ + s.product_);
+      s.constraint_ = -s.constraint_;
+      s.equations_.solve(s.force_, s.constraint_);
+      s.mechanism_.times_mass(s.force_, s.product_);
+      return std::sqrt(s.force_.dot(s.product_));
+    }
+
+    double expected_contraction(double size) { return s.first_ratio(from, size); }
+
+    void move(double /*part*/) {
+      to.multiplier += (1.0 / s.scale_) * s.constraint_;
+      s.mechanism_.to_travel(s.travel_, s.force_);
+      s.travel_ += s.force_;
+    }
+
+    // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
+    numerics::NewtonVerdict judge(const numerics::NewtonIteration& iteration) {
+      const double ratio = iteration.contraction, size = iteration.size;
+      const bool is_first_correction = iteration.number == 0;
+      if (is_first_correction) {
+        to.contraction = growth * from.contraction;
+        to.correction = from.correction;
+      } else if (iteration.number == 1) {
+        to.contraction = safety * ratio;
+        to.correction = iteration.last;
+      }
+      // The direction of a slow slip turned too far.
+      is_wary = !is_first_correction && s.has_slip_ && !is_wary && ratio > 0.5;
+      const bool is_noise = !is_first_correction && size <= noise * s.tolerance_;
+      const double before = is_noise && !(ratio < 1.0) ? size : numerics::error_before(size, ratio);
+      is_placed = !is_first_correction && before <= negligible * s.tolerance_;
+      return ratio * before <= s.tolerance_ ? numerics::NewtonVerdict::converged : numerics::NewtonVerdict::go_on;
+    }
+
+    MechanismStepper& s;
+    const system::State& from;
+    const double h;
+    system::State& to;
+    bool is_first = true;
+    bool is_wary = false;    // of frictions' slopes
+    bool is_placed = false;  // the last correction moves nothing: `to`, and G, stand where they shall
+  };
+
   /// What a first correction leaves of the error. With Newton's own matrix less than nine tenths, but not across a
   /// kink, where the acceleration of a short step would be made of what is left; and what a step before measured, in
   /// proportion to the correction where that is larger (Newton's method is quadratic: Deuflhard 2004, 2.1). Each step
@@ -178,7 +208,7 @@ class MechanismStepper final : public Stepper {
     mechanism_.retract(from.q, travel_, to.q);
   }
 
-  /// @param is_placed  the last correction moves nothing: `to`, and G, stand where they shall
+  /// @param is_placed  see Iterates
   StepReport finish(const system::State& from, double h, bool is_placed, system::State& to) {
     if (!is_placed) place(from, h, to);
     if (plan_.projects_velocities && constraint_.size() > 0) {
@@ -269,6 +299,7 @@ class MechanismStepper final : public Stepper {
   const system::Mechanism& mechanism_;
   system::MechanismEquations equations_;
   Vector travel_, force_, product_, constraint_;
+  numerics::NewtonRules rules_;
   double tolerance_ = 0.0, scale_ = 0.0;
   bool is_smooth_ = true;                // the slopes of all forces
   bool has_followed_reactions_ = false;  // by friction
