@@ -1,5 +1,6 @@
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/harmonic_balance_equations.hpp>
+#include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -268,61 +269,85 @@ void HarmonicBalanceEquations::solve_linear(const SliderSeries& series, double t
   solve_by_least_change(jacobian, x);
 }
 
-HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& series, double tolerance,
-                                                                  int most_iterations) {
-  const int count = series.orders.count;
-  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  Outcome outcome;
-  double size = evaluate(series), best = size;
-  trial_ = best_ = series;
-  recent_.fill(size);
-  for (;;) {
+/// The balance as Newton's method sees it: the iterate is a series, and what is tried stands in trial_. Its size is the
+/// largest residual.
+struct HarmonicBalanceEquations::Iterates : numerics::NewtonProblem {
+  Iterates(HarmonicBalanceEquations& of, SliderSeries& series_, double tolerance_)
+      : eq(of), series(series_), tolerance(tolerance_) {}
+
+  double evaluate(bool /*with_tangent*/) { return eq.evaluate(is_tried ? eq.trial_ : series); }
+
+  bool is_solved(double residual) {
     // Round-off of the linear part bounds what can be reached.
-    const double reachable = std::max(tolerance * displacement_, 8e-15 * linear_);
-    outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
-    outcome.has_converged = size <= reachable;
-    if (outcome.has_converged || outcome.iterations >= most_iterations || !std::isfinite(size)) break;
+    reachable = std::max(tolerance * eq.displacement_, 8e-15 * eq.linear_);
+    relative = eq.displacement_ > 0.0 ? residual / eq.displacement_ : residual;
+    if (!is_tried) {
+      best = residual;
+      eq.trial_ = eq.best_ = series;
+    }
+    return residual <= reachable;
+  }
+
+  bool factorise() {
     stop_if_asked();
-    ++outcome.iterations;
-    differentiate(series);
-    if (!is_large(series)) factorise(series);
-    step_ = residual_;
-    solve_linear(series, newton_tolerance, step_);
-    if (!step_.allFinite()) break;
-    double part = 1.0, next = 0.0;
-    bool is_better = false;
-    // Where a slider begins to slip twice, or a loop splits, the residual has a kink: Newton must be allowed to pass it
-    // upwards (a line search that is not monotone: Grippo, Lampariello and Lucidi 1986).
-    const double largest = *std::max_element(recent_.begin(), recent_.end());
-    for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
-      for (std::size_t a = 0; a < active_.size(); ++a) {
-        const Index j = active_[a], base = static_cast<Index>(a) * rows;
-        if (series.has_mean) trial_.mean[j] = series.mean[j] - part * step_[base];
-        for (int i = 0; i < count; ++i)
-          trial_.coefficients(i, j) =
-              series.coefficients(i, j) - part * Complex(step_[base + shift + 2 * i], step_[base + shift + 2 * i + 1]);
-      }
-      next = evaluate(trial_);
-      is_better = next < (1.0 - 0.1 * part) * largest;
-      if (is_better) break;
-    }
-    if (!is_better) {
-      // At the floor of round-off nothing gets better; the loops belong to the series again.
-      if (best < size) std::swap(series, best_);
-      size = evaluate(series);
-      outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
-      outcome.has_converged = size <= 100.0 * reachable;
-      break;
-    }
-    std::swap(series.mean, trial_.mean);
-    std::swap(series.coefficients, trial_.coefficients);
-    size = next;
-    recent_[static_cast<std::size_t>(outcome.iterations) % recent_.size()] = size;
-    if (size < best) {
-      best = size;
-      best_ = series;
+    eq.differentiate(series);
+    if (!eq.is_large(series)) eq.factorise(series);
+    return true;
+  }
+
+  double correct() {
+    eq.step_ = eq.residual_;
+    eq.solve_linear(series, newton_tolerance, eq.step_);
+    return eq.step_.allFinite() ? eq.step_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  }
+
+  void move(double part) {
+    is_tried = true;
+    const int count = series.orders.count;
+    const Index rows = eq.rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+    const Vector& step = eq.step_;
+    for (std::size_t a = 0; a < eq.active_.size(); ++a) {
+      const Index j = eq.active_[a], base = static_cast<Index>(a) * rows;
+      if (series.has_mean) eq.trial_.mean[j] = series.mean[j] - part * step[base];
+      for (int i = 0; i < count; ++i)
+        eq.trial_.coefficients(i, j) =
+            series.coefficients(i, j) - part * Complex(step[base + shift + 2 * i], step[base + shift + 2 * i + 1]);
     }
   }
+
+  void accept(double residual) {
+    std::swap(series.mean, eq.trial_.mean);
+    std::swap(series.coefficients, eq.trial_.coefficients);
+    if (residual >= best) return;
+    best = residual;
+    eq.best_ = series;
+  }
+
+  HarmonicBalanceEquations& eq;
+  SliderSeries& series;
+  double tolerance;
+  double best = 0.0, reachable = 0.0;
+  double relative = 0.0;  // residual of the series over the displacements
+  bool is_tried = false;
+};
+
+HarmonicBalanceEquations::Outcome HarmonicBalanceEquations::solve(SliderSeries& series, double tolerance,
+                                                                  int most_iterations) {
+  numerics::NewtonRules rules;
+  rules.most_iterations = most_iterations;
+  rules.most_halvings = 7;
+  // Where a slider begins to slip twice, or a loop splits, the residual has a kink: Newton must be allowed to pass it
+  // upwards.
+  rules.memory = 4;
+  Iterates iterates(*this, series, tolerance);
+  const numerics::NewtonReport report = numerics::newton(iterates, rules);
+  Outcome outcome{report.has_converged(), iterates.relative, report.iterations};
+  if (report.outcome != numerics::NewtonOutcome::diverged) return outcome;
+  // At the floor of round-off nothing gets better; the loops belong to the series again.
+  if (iterates.best < report.residual) std::swap(series, best_);
+  const double size = evaluate(series);
+  outcome.residual = displacement_ > 0.0 ? size / displacement_ : size;
+  outcome.has_converged = size <= 100.0 * iterates.reachable;
   return outcome;
 }
 

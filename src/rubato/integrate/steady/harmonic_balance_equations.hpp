@@ -5,7 +5,6 @@
 #include <rubato/integrate/steady/small_lu.hpp>
 #include <rubato/numerics/gmres.hpp>
 
-#include <array>
 #include <vector>
 
 namespace rubato::integrate {
@@ -92,6 +91,8 @@ class HarmonicBalanceEquations {
                   ComplexMatrix& forces_left_out, ComplexMatrix& force_change);
 
  private:
+  struct Iterates;
+
   double evaluate(const SliderSeries& series);
   /// dF of every slider by its own unknowns, at the loops evaluated last.
   void differentiate(const SliderSeries& series);
@@ -131,7 +132,6 @@ class HarmonicBalanceEquations {
   Vector preconditioned_, product_;
   ComplexMatrix changed_force_;
   SliderSeries trial_, best_;
-  std::array<double, 4> recent_{};  ///< residuals of the last steps
   double displacement_ = 0.0, linear_ = 0.0;
 };
 
