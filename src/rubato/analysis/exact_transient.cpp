@@ -3,6 +3,8 @@
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/structure_balance.hpp>
+#include <rubato/integrate/structure_energy.hpp>
+#include <rubato/results/columns/structure_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -18,19 +20,39 @@ using Kind = model::OutputDescription::Kind;
 constexpr int samples_a_period = 64;
 constexpr std::size_t samples_a_chunk = 4096;  // between reports of progress; memory does not grow with the duration
 
+/// The energy of a structure with the works that the flow itself finds, of which steps know nothing.
+class ExactEnergy final : public integrate::EnergyPart {
+ public:
+  explicit ExactEnergy(const system::LocallyNonlinear& system) : structure_(system) {}
+
+  /// What is done since the last step that was booked.
+  void set(const integrate::ExactWork& work) { work_ = work; }
+
+  std::vector<integrate::Account> accounts() const override { return structure_.accounts(); }
+  void add_stored(const system::State& state, integrate::Entries row) override { structure_.add_stored(state, row); }
+  void add_flow(const system::State&, const system::State&, integrate::Entries row) override {
+    row[integrate::StructureEnergy::damper_dissipated] += work_.damper;
+    row[integrate::StructureEnergy::slider_dissipated] += work_.slider;
+    row[integrate::StructureEnergy::load_work] += work_.load;
+  }
+
+ private:
+  integrate::StructureEnergy structure_;
+  integrate::ExactWork work_;
+};
+
 /// Records samples, and transitions where no times are asked for.
 class ExactRecorder final : public integrate::ExactVisitor {
  public:
-  ExactRecorder(const TransientPlan& plan, const system::LocallyNonlinear& system, TransientRecorder& recorder,
-                RunContext& context)
-      : system_(system),
+  ExactRecorder(const TransientPlan& plan, TransientRecorder& recorder, ExactEnergy& energy,
+                integrate::EnergyLedger& ledger, RunContext& context)
+      : start_(plan.start),
         recorder_(recorder),
+        energy_(energy),
+        ledger_(ledger),
         context_(context),
-        with_transitions_(plan.output == Kind::every_step),
-        with_energy_(plan.energy),
-        product_(system.size()) {
-    start_ = energy_of(system, plan.start, product_);
-    start_.start = start_.stored();
+        with_transitions_(plan.output == Kind::every_step) {
+    ledger.start(start_);
   }
 
   bool sample(const system::State& state, const integrate::ExactWork& work) override {
@@ -41,34 +63,22 @@ class ExactRecorder final : public integrate::ExactVisitor {
     if (with_transitions_ && state.t != last_) record(state, work);
     return !context_.stop.load(std::memory_order_relaxed);
   }
-  /// Sums of work begin anew with each advance.
-  void keep(const integrate::ExactWork& work) {
-    done_.damper += work.damper;
-    done_.slider += work.slider;
-    done_.load += work.load;
-  }
-  const integrate::ExactWork& last_work() const { return last_work_; }
+  /// Sums of work begin anew with each advance: books those of the last row.
+  void keep() { ledger_.add_step(start_, start_); }
 
  private:
   void record(const system::State& state, const integrate::ExactWork& work) {
     last_ = state.t;
-    last_work_ = work;
-    if (!with_energy_) return recorder_.record(state, nullptr);
-    Energy energy = energy_of(system_, state, product_);
-    energy.start = start_.start;
-    energy.damper_dissipated = done_.damper + work.damper;
-    energy.slider_dissipated = done_.slider + work.slider;
-    energy.load_work = done_.load + work.load;
-    recorder_.record(state, &energy);
+    energy_.set(work);
+    recorder_.record(start_, state);
   }
 
-  const system::LocallyNonlinear& system_;
+  const system::State& start_;
   TransientRecorder& recorder_;
+  ExactEnergy& energy_;
+  integrate::EnergyLedger& ledger_;
   RunContext& context_;
-  bool with_transitions_, with_energy_;
-  Vector product_;
-  Energy start_;
-  integrate::ExactWork done_, last_work_;
+  bool with_transitions_;
   double last_ = -1.0;
 };
 
@@ -102,8 +112,13 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
                               const system::LocallyNonlinear& system, RunContext& context) {
   integrate::ExactFlow flow(system);
   integrate::StructureBalance balance(system);
-  TransientRecorder recorder(name, plan, system, balance, context.sink);
-  ExactRecorder visitor(plan, system, recorder, context);
+  std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
+  parts.push_back(std::make_unique<ExactEnergy>(system));
+  auto& energy = static_cast<ExactEnergy&>(*parts.front());
+  integrate::EnergyLedger ledger(std::move(parts));
+  TransientRecorder recorder(name, plan, results::columns_of_motion(system, plan.observed), balance,
+                             plan.energy ? &ledger : nullptr, context.sink);
+  ExactRecorder visitor(plan, recorder, energy, ledger, context);
   const double interval = plan.output == Kind::interval ? plan.interval : default_interval(system);
   const double round_off = 1e-12 * plan.duration;
   system::State state = plan.start;
@@ -136,7 +151,7 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
     } catch (const Stopped&) {  // between two rows
       report.end = integrate::ExactEnd::stopped;
     }
-    visitor.keep(visitor.last_work());
+    visitor.keep();
     transitions += report.transitions;
     context.progress.advance(state.t);
     if (report.end == integrate::ExactEnd::stopped && state.t < plan.duration) {

@@ -1,12 +1,9 @@
-#include <rubato/analysis/beam_section_forces.hpp>
-#include <rubato/analysis/joint_coordinates.hpp>
-#include <rubato/analysis/joint_laws.hpp>
-#include <rubato/analysis/joint_reactions.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
-#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
+#include <rubato/results/columns/beam_section_forces.hpp>
+#include <rubato/results/columns/mechanism_columns.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -80,7 +77,7 @@ std::vector<std::string> check_mechanism_static(const std::string& name, const L
   std::vector<std::string> warnings;
   (void)assembled_start(where, mechanism, warnings, false);
   (void)observed_or_all(description.observe, mechanism);
-  (void)BeamSectionForces(mechanism, description.section_forces, "analysis \"" + name + "\": ");
+  (void)results::BeamSectionForces(mechanism, description.section_forces, "analysis \"" + name + "\": ");
   return warnings;
 }
 
@@ -100,28 +97,16 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
     report.status = RunStatus::failed;
     return report;
   }
-  JointCoordinates joints(mechanism);
-  JointReactions reactions(mechanism);
-  JointLaws laws(mechanism);
-  BeamSectionForces beams(mechanism, description.section_forces, "analysis \"" + name + "\": ");
-  const ObservedBlocks observed(joints.with_angles(observed_or_all(description.observe, mechanism)));
+  const auto columns = results::columns_of_equilibrium(mechanism, observed_or_all(description.observe, mechanism),
+                                                       description.section_forces, "analysis \"" + name + "\": ");
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   if (const std::string held = held_locks(found.state, mechanism, "\n"); !held.empty())
     layout.attributes.emplace_back("held_locks", held);
-  observed.add(layout, {ObservedBlocks::Quantity::position});
-  joints.add_displacements(layout);
-  reactions.add(layout);
-  laws.add(layout);
-  beams.add(layout);
-  joints.go_to(found.state);
-  Vector positions;
-  joints.positions(positions);
   std::vector<double> row{0.0};
-  observed.append({&positions}, row);
-  joints.append_displacements(row);
-  reactions.append(joints.motion(), found.state.multiplier, row);
-  laws.append(joints.motion(), row);
-  beams.append(joints.motion(), row);
+  for (const auto& group : columns) {
+    group->add(layout);
+    group->append(found.state, row);
+  }
   context.sink.open(layout)->append(row);
   if (found.load_steps > 0)
     report.findings.push_back(fmt::format(

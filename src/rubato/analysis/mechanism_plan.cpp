@@ -1,4 +1,3 @@
-#include <rubato/analysis/beam_section_forces.hpp>
 #include <rubato/analysis/load_swings.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_plan.hpp>
@@ -7,6 +6,7 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/numerics/formula_jump.hpp>
+#include <rubato/results/columns/beam_section_forces.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -150,7 +150,7 @@ MechanismPlan plan_mechanism(const std::string& name, const Location& where,
   plan.allow_unstable = description.allow_unstable;
   plan.project_velocities = description.project_velocities;
   plan.section_forces = description.section_forces;
-  (void)BeamSectionForces(mechanism, description.section_forces, title);
+  (void)results::BeamSectionForces(mechanism, description.section_forces, title);
   transient.method = method_of(description.method, parameters);
   try {
     (void)integrate::make_mechanism_stepper(transient.method, mechanism, {}, plan.allow_unstable);

@@ -1,9 +1,11 @@
+#include <rubato/analysis/mechanism_events.hpp>
 #include <rubato/analysis/mechanism_march.hpp>
-#include <rubato/analysis/mechanism_recorder.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/transient_observer.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/mechanism/mechanism_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
+#include <rubato/results/columns/mechanism_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -13,38 +15,24 @@
 namespace rubato::analysis {
 namespace {
 
-class MechanismBooks final : public TransientBooks {
+/// How far the motion drifts from its constraints and how far it goes, at the ends of the steps.
+class MotionWatch final : public integrate::Observer {
  public:
-  MechanismBooks(const TransientPlan& plan, integrate::MechanismBalance& balance, MechanismRecorder& recorder,
-                 const integrate::MechanismTimeline& timeline)
-      : keeps_energy_(plan.energy),
-        mechanism_(balance.equations().mechanism()),
-        recorder_(recorder),
-        timeline_(timeline),
-        ledger_(balance),
-        equations_(balance.equations()),
+  MotionWatch(const system::State& start, system::MechanismEquations& equations)
+      : equations_(equations),
+        mechanism_(equations.mechanism()),
+        from_(start.q),
         drift_(mechanism_.constraint_count()),
         way_(mechanism_.size()),
         momentum_(mechanism_.size()) {}
 
-  void start(const system::State& state) override {
-    ledger_.start(state);
-    from_ = state.q;
-  }
-
-  void book(const system::State& before, const system::State& after) override {
-    if (keeps_energy_) ledger_.add_step(before, after, timeline_.impulsive_work());
+  bool accepted(const system::State&, const system::State& after) override {
     note_drift(after);
     note_way(after);
+    return true;
   }
 
-  void record(const system::State& before, const system::State& now, bool is_balanced) override {
-    if (!keeps_energy_) return recorder_.record(now, nullptr, is_balanced);
-    const MechanismEnergy energy = ledger_.at(before, now, timeline_.impulsive_work());
-    recorder_.record(now, &energy, is_balanced);
-  }
-
-  /// Largest rate of the constraints at the ends of the steps [m/s], [rad/s].
+  /// Largest rate of the constraints [m/s], [rad/s].
   double largest_drift() const { return largest_drift_; }
   /// The longest way from where the run starts, in the mass norm [m sqrt(kg)].
   double largest_way() const { return largest_way_; }
@@ -64,24 +52,11 @@ class MechanismBooks final : public TransientBooks {
     largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
   }
 
-  bool keeps_energy_;
-  const system::Mechanism& mechanism_;
-  MechanismRecorder& recorder_;
-  const integrate::MechanismTimeline& timeline_;
-  MechanismLedger ledger_;
   system::MechanismEquations& equations_;
-  Vector drift_;
-  double largest_drift_ = 0.0;
-  Vector from_, way_, momentum_;
-  double largest_way_ = 0.0;
+  const system::Mechanism& mechanism_;
+  Vector from_, drift_, way_, momentum_;
+  double largest_drift_ = 0.0, largest_way_ = 0.0;
 };
-
-/// What the impact of a rigid lock took, or the spring of a damped stop still held as it let go.
-std::string energy_told(const integrate::LockEvent& event) {
-  if (!(event.energy_lost > 0.0)) return {};
-  if (event.has_engaged) return fmt::format(", taking {:.4g} J", event.energy_lost);
-  return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
-}
 
 /// What to tell of a motion so small beside the size by which its errors are measured that they may be more than ten
 /// tolerances and two thousandths of what moves; empty: nothing.
@@ -104,47 +79,6 @@ std::string warning_of_small_motion(double way, double size, const AutomaticStep
       way, step.tolerance, size, error, share, tolerance);
 }
 
-/// The locks on which a run starts at rest, as if they had engaged then.
-std::vector<integrate::LockEvent> locks_at_start(const system::State& start) {
-  std::vector<integrate::LockEvent> events;
-  for (std::size_t i = 0; i < start.phase.size(); ++i)
-    if (start.phase[i] != model::lock_open) events.push_back({start.t, static_cast<int>(i)});
-  return events;
-}
-
-/// A time to one digit more than is known of it. What happens soon has three digits at least.
-std::string told_time(double t, double known) {
-  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(known))), 0, 12);
-  if (std::abs(t) < 100.0 * std::pow(10.0, -decimals)) return fmt::format("{:.3g}", t);
-  std::string text = fmt::format("{:.{}f}", t, decimals);
-  if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-/// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
-/// @param known  of their times [s]
-void report_events(const std::vector<integrate::LockEvent>& events, const system::Mechanism& mechanism, double known,
-                   std::vector<std::string>& findings) {
-  constexpr long most_told = 6;
-  std::vector<long> changes(mechanism.model().frictions.size(), 0);
-  for (const auto& event : events) {
-    if (event.friction < 0) {
-      findings.push_back(
-          fmt::format("\"{}\" {} at t = {} s{}", mechanism.model().locks[static_cast<std::size_t>(event.lock)].name,
-                      event.has_engaged ? "locks" : "lets go", told_time(event.t, known), energy_told(event)));
-    } else if (++changes[static_cast<std::size_t>(event.friction)] <= most_told) {
-      findings.push_back(fmt::format("\"{}\" {} at t = {} s",
-                                     mechanism.model().frictions[static_cast<std::size_t>(event.friction)].label(),
-                                     event.has_engaged ? "sticks" : "slips", told_time(event.t, known)));
-    }
-  }
-  for (std::size_t i = 0; i < changes.size(); ++i)
-    if (changes[i] > most_told)
-      findings.push_back(
-          fmt::format("\"{}\" sticks and slips {} times in all", mechanism.model().frictions[i].label(), changes[i]));
-}
-
 }  // namespace
 
 RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
@@ -159,13 +93,19 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   }
   MechanismMarch march(plan, mechanism);
   integrate::MechanismBalance balance(mechanism);
-  MechanismRecorder recorder(name, plan, balance, context.sink);
-  MechanismBooks books(transient, balance, recorder, march.timeline());
+  std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
+  parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance, march.timeline()));
+  integrate::EnergyLedger energy(std::move(parts));
+  integrate::EnergyLedger* const ledger = transient.energy ? &energy : nullptr;
+  TransientRecorder recorder(name, transient,
+                             results::columns_of_motion(balance.equations(), transient.observed, plan.section_forces),
+                             balance, ledger, context.sink);
+  MotionWatch watch(transient.start, balance.equations());
   constexpr long steps_a_report = 64;
-  TransientObserver observer(transient, books,
+  TransientObserver observer(transient, recorder, ledger,
                              StepInterpolation(mechanism, balance, integrate::find_method(transient.method.name).order,
                                                march.timeline().breakpoints(transient.start.t, transient.duration)),
-                             steps_a_report, context);
+                             steps_a_report, context, &watch);
   context.progress.begin(name, transient.duration, "s of motion");
   observer.start(march.state());
   std::unique_ptr<StepRecorder> tries;
@@ -174,18 +114,16 @@ RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, cons
   const system::State& state = march.state();
   observer.finish(state);
   context.progress.end();
-  std::vector<integrate::LockEvent> events = locks_at_start(transient.start);
-  events.insert(events.end(), march.timeline().events().begin(), march.timeline().events().end());
-  write_events(name, events, mechanism, context.sink);
+  write_events(name, transient.start, march.timeline().events(), mechanism, context.sink);
   RunReport run;
   run.statistics = statistics(report, state.t);
   run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
-  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", books.largest_drift()));
+  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", watch.largest_drift()));
   run.warnings = plan.warnings;
   if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
     run.warnings.push_back(warning);
   if (const std::string warning =
-          warning_of_small_motion(books.largest_way(), march.error_size(), *transient.automatic, mechanism);
+          warning_of_small_motion(watch.largest_way(), march.error_size(), *transient.automatic, mechanism);
       !warning.empty())
     run.warnings.push_back(warning);
   if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)

@@ -1,7 +1,7 @@
 #include <rubato/analysis/modes.hpp>
-#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/core/stopping_aside.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
+#include <rubato/results/columns/observed_columns.hpp>
 
 #include <fmt/format.h>
 

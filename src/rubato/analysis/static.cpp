@@ -1,5 +1,6 @@
-#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/analysis/static.hpp>
+#include <rubato/analysis/transient_plan.hpp>
+#include <rubato/results/columns/contact_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -82,11 +83,12 @@ RunReport run_static(const std::string& name, const Location& where, const model
                      const system::LocallyNonlinear& system, RunContext& context) {
   const StaticEquilibrium found = equilibrium_of(name, where, description, system);
   const std::vector<model::Held> held = held_of("", description, system);
-  const ObservedBlocks observed(observed_or_all(description.observe, system));
-  const SliderBlocks sliders(system);
-  const StopBlocks stops(system);
+  results::ObservedColumns observed(observed_or_all(description.observe, system),
+                                    {results::ObservedColumns::Quantity::position});
+  results::SliderColumns sliders(system);
+  results::StopColumns stops(system);
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
-  observed.add(layout, {ObservedBlocks::Quantity::position});
+  observed.add(layout);
   sliders.add(layout);
   stops.add(layout);
   std::vector<std::string> forces, moments;
@@ -100,7 +102,7 @@ RunReport run_static(const std::string& name, const Location& where, const model
     layout.blocks.push_back({"reaction", "N", "force that holds the displacement", "held_displacement", forces});
   if (!moments.empty())
     layout.blocks.push_back({"reaction_moment", "N m", "moment that holds the rotation", "held_rotation", moments});
-  observed.append({&found.state.q}, row);
+  observed.append(found.state, row);
   sliders.append(found.state, row);
   stops.append(found.state, row);
   for (std::size_t i = 0; i < held.size(); ++i)

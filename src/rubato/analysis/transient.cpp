@@ -1,10 +1,11 @@
 #include <rubato/analysis/transient.hpp>
 #include <rubato/analysis/transient_observer.hpp>
-#include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/load_jumps.hpp>
 #include <rubato/integrate/structure_balance.hpp>
+#include <rubato/integrate/structure_energy.hpp>
+#include <rubato/results/columns/structure_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -12,30 +13,6 @@
 
 namespace rubato::analysis {
 namespace {
-
-class StructureBooks final : public TransientBooks {
- public:
-  StructureBooks(const TransientPlan& plan, const system::LocallyNonlinear& system, integrate::Balance& balance,
-                 TransientRecorder& recorder)
-      : keeps_energy_(plan.energy), recorder_(recorder), ledger_(system, balance) {}
-
-  void start(const system::State& state) override { ledger_.start(state); }
-
-  void book(const system::State& before, const system::State& after) override {
-    if (keeps_energy_) ledger_.add_step(before, after);
-  }
-
-  void record(const system::State& before, const system::State& now, bool is_balanced) override {
-    if (!keeps_energy_) return recorder_.record(now, nullptr, is_balanced);
-    const Energy energy = ledger_.at(before, now);
-    recorder_.record(now, &energy, is_balanced);
-  }
-
- private:
-  bool keeps_energy_;
-  TransientRecorder& recorder_;
-  EnergyLedger ledger_;
-};
 
 std::string missed_jumps(const integrate::LoadJumps& jumps) {
   return fmt::format(
@@ -103,10 +80,12 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     return run_exact_transient(name, plan, system, context);
   const auto stepper = integrate::make_stepper(plan.method, system);
   integrate::StructureBalance balance(system);
-  TransientRecorder recorder(name, plan, system, balance, context.sink);
-  StructureBooks books(plan, system, balance, recorder);
+  integrate::EnergyLedger energy(integrate::energy_parts(system, balance));
+  integrate::EnergyLedger* const ledger = plan.energy ? &energy : nullptr;
+  TransientRecorder recorder(name, plan, results::columns_of_motion(system, plan.observed), balance, ledger,
+                             context.sink);
   const long steps_a_report = system.size() > 1000 ? 1 : 256;
-  TransientObserver observer(plan, books,
+  TransientObserver observer(plan, recorder, ledger,
                              StepInterpolation(system, balance, integrate::find_method(plan.method.name).order),
                              steps_a_report, context);
   system::State state = integrate::consistent_start(system, plan.start);

@@ -7,16 +7,19 @@ namespace rubato::analysis {
 
 using Kind = model::OutputDescription::Kind;
 
-TransientObserver::TransientObserver(const TransientPlan& plan, TransientBooks& books, StepInterpolation interpolation,
-                                     long steps_a_report, RunContext& context)
+TransientObserver::TransientObserver(const TransientPlan& plan, TransientRecorder& recorder,
+                                     integrate::EnergyLedger* ledger, StepInterpolation interpolation,
+                                     long steps_a_report, RunContext& context, integrate::Observer* listener)
     : plan_(plan),
-      books_(books),
+      recorder_(recorder),
+      ledger_(ledger),
       interpolation_(std::move(interpolation)),
       context_(context),
+      listener_(listener),
       steps_a_report_(steps_a_report) {}
 
 void TransientObserver::start(const system::State& state) {
-  books_.start(state);
+  if (ledger_) ledger_->start(state);
   // Requested times may begin later than the run.
   if (plan_.output == Kind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
   record(state, state);
@@ -27,11 +30,12 @@ bool TransientObserver::accepted(const system::State& before, const system::Stat
   ++steps_;
   last_recorded_ = false;
   if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
-  books_.book(before, after);
+  if (ledger_) ledger_->add_step(before, after);
+  const bool goes_on = !listener_ || listener_->accepted(before, after);
   if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
     record(after, after);
   if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
-  return !context_.stop.load(std::memory_order_relaxed);
+  return goes_on && !context_.stop.load(std::memory_order_relaxed);
 }
 
 void TransientObserver::finish(const system::State& state) {
@@ -40,7 +44,7 @@ void TransientObserver::finish(const system::State& state) {
 }
 
 void TransientObserver::record(const system::State& before, const system::State& now, bool is_balanced) {
-  books_.record(before, now, is_balanced);
+  recorder_.record(before, now, is_balanced);
   last_recorded_ = true;
 }
 

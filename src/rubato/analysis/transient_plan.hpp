@@ -3,6 +3,7 @@
 #include <rubato/analysis/automatic_step.hpp>
 #include <rubato/integrate/method.hpp>
 #include <rubato/model/description.hpp>
+#include <rubato/results/columns/observed_columns.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <optional>
@@ -11,15 +12,7 @@
 
 namespace rubato::analysis {
 
-/// A coordinate to record, or the difference of two.
-struct Observed {
-  std::string label;
-  Index first = 0;
-  Index second = ground;     ///< ground: `first` alone
-  bool is_rotation = false;  ///< in radians
-
-  double of(const Vector& x) const { return second == ground ? x[first] : x[first] - x[second]; }
-};
+using results::Observed;
 
 /// A transient with all its values: what the description says, evaluated and found possible.
 struct TransientPlan {

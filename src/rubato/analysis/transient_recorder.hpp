@@ -1,10 +1,9 @@
 #pragma once
 
-#include <rubato/analysis/energy_ledger.hpp>
-#include <rubato/analysis/observed_blocks.hpp>
-#include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/balance.hpp>
+#include <rubato/integrate/energy_ledger.hpp>
+#include <rubato/results/columns/column_group.hpp>
 
 #include <memory>
 #include <string>
@@ -12,30 +11,28 @@
 
 namespace rubato::analysis {
 
-/// Turns states into rows: time, position, velocity and acceleration of what is observed, force and slip of every
-/// slider, force and penetration of every stop, and the energy ledger in a table of its own.
+/// Turns states into rows: time and the columns of some groups, and the energy ledger in a table of its own.
+///
+/// Accelerations and reactions are those of equilibrium at the positions and velocities of the row: the multipliers of
+/// a step carry what the constraints do to velocities that have drifted, over the length of that step.
 class TransientRecorder {
  public:
-  TransientRecorder(const std::string& name, const TransientPlan& plan, const system::LocallyNonlinear& system,
-                    integrate::Balance& balance, results::Sink& sink);
+  /// @param balance  of the march; lent
+  /// @param ledger   null: no table of energy; lent
+  TransientRecorder(const std::string& name, const TransientPlan& plan, results::ColumnGroups groups,
+                    integrate::Balance& balance, integrate::EnergyLedger* ledger, results::Sink& sink);
 
-  /// @param energy  null without a ledger
-  /// @param is_balanced  the acceleration of the state is that to tell: between the ends of a step
-  void record(const system::State& state, const Energy* energy, bool is_balanced = false);
-  bool keeps_energy() const { return energy_rows_ != nullptr; }
+  /// Writes a row.
+  /// @param before  the last state booked by the ledger; may be `now`
+  /// @param is_balanced  acceleration and multipliers of `now` are those to show: between the ends of a step
+  void record(const system::State& before, const system::State& now, bool is_balanced = false);
   long rows() const { return count_; }
 
  private:
-  void add_reactions(results::TableLayout& layout) const;
-  void append_supports(const system::State& state);
-
-  const system::LocallyNonlinear& system_;
-  ObservedBlocks observed_;
-  SliderBlocks sliders_;
-  StopBlocks stops_;
+  results::ColumnGroups groups_;
   integrate::Balance& balance_;
+  integrate::EnergyLedger* ledger_;
   system::State shown_;
-  Vector q_, v_, a_, reaction_;  // of all coordinates, where supports move
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;
   long count_ = 0;

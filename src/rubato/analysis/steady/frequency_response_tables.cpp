@@ -1,6 +1,6 @@
-#include <rubato/analysis/observed_blocks.hpp>
 #include <rubato/analysis/steady/frequency_response_columns.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
+#include <rubato/results/columns/contact_columns.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -111,7 +111,7 @@ std::vector<std::string> reserved_columns() {
 
 ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
     : layout_{name, "", "point", {}, attributes_of(plan, input)},
-      sliders_(SliderBlocks(input.system).order()),
+      sliders_(results::SliderColumns(input.system).order()),
       has_direction_(plan.has_both_directions),
       has_fundamental_(plan.has_other_fundamental) {
   auto& blocks = layout_.blocks;
@@ -120,7 +120,7 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   blocks.push_back(angular_frequency());
   if (has_fundamental_) blocks.push_back(scalar("fundamental", "rad/s", "common fundamental of the loads"));
   amplitudes_ = blocks.size();
-  const auto observe = [&](const ColumnNames& of_displacements, const ColumnNames& of_rotations) {
+  const auto observe = [&](const results::ColumnNames& of_displacements, const results::ColumnNames& of_rotations) {
     add_blocks(plan.observed, of_displacements, of_rotations, blocks);
   };
   add_amplitudes(plan.observed, blocks);
@@ -139,7 +139,7 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   observe({"mean", "m", "mean over a period"}, {"angle_mean", "rad", "mean over a period"});
   observe({"rms", "m", "root of the mean square over a period"},
           {"angle_rms", "rad", "root of the mean square over a period"});
-  const SliderBlocks sliders(input.system);
+  const results::SliderColumns sliders(input.system);
   sliders.add({"dissipated", "J", "friction work over a period"}, blocks);
   sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
   sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},

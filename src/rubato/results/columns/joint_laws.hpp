@@ -1,25 +1,24 @@
 #pragma once
 
 #include <rubato/model/bodies/element.hpp>
-#include <rubato/results/sink.hpp>
-#include <rubato/system/mechanism.hpp>
+#include <rubato/results/columns/column_group.hpp>
+#include <rubato/system/state_motion.hpp>
 
 #include <memory>
 #include <string>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::results {
 
 /// What springs, dampers, laws and elastic locks do together on the coordinate of each joint that has any, as columns
 /// of results: `law_moment` [N m] of those that turn, then `law_force` [N] of those that slide and of struts; + opens
 /// the angle, or moves the second part away.
-class JointLaws {
+class JointLaws final : public ColumnGroup {
  public:
   explicit JointLaws(const system::Mechanism& mechanism);
 
-  void add(results::TableLayout& layout) const;
-  /// Appends the values, in the order of `add`.
-  void append(const model::Motion& motion, std::vector<double>& row);
+  void add(TableLayout& layout) const override;
+  void append(const system::State& state, std::vector<double>& row) override;
 
  private:
   struct Law {
@@ -29,8 +28,9 @@ class JointLaws {
   };
   double value(const Law& law, const model::Motion& motion);
 
+  system::StateMotion motion_;
   std::vector<Law> turning_, sliding_;
   std::vector<double> force_, slope_;
 };
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results

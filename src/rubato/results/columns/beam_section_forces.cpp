@@ -1,12 +1,12 @@
-#include <rubato/analysis/beam_section_forces.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/results/columns/beam_section_forces.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-namespace rubato::analysis {
+namespace rubato::results {
 namespace {
 
 struct Component {
@@ -32,7 +32,7 @@ std::span<const Component> components(bool in_plane) {
 
 BeamSectionForces::BeamSectionForces(const system::Mechanism& mechanism, const model::SectionForcesDescription& wanted,
                                      const std::string& title)
-    : in_plane_(mechanism.model().dimension == 2) {
+    : motion_(mechanism), in_plane_(mechanism.model().dimension == 2) {
   std::vector<std::string> known;
   for (const auto& part : mechanism.model().beam_parts)
     if (known.empty() || known.back() != part.beam) known.push_back(part.beam);
@@ -62,7 +62,7 @@ void BeamSectionForces::take(const system::Mechanism& mechanism, const std::stri
   }
 }
 
-void BeamSectionForces::add(results::TableLayout& layout) const {
+void BeamSectionForces::add(TableLayout& layout) const {
   if (parts_.empty()) return;
   std::vector<std::string> names;
   for (const Part& part : parts_) names.push_back(part.name);
@@ -70,7 +70,8 @@ void BeamSectionForces::add(results::TableLayout& layout) const {
     layout.blocks.push_back({component.variable, component.unit, component.description, "beam_part", names});
 }
 
-void BeamSectionForces::append(const model::Motion& motion, std::vector<double>& row) {
+void BeamSectionForces::append(const system::State& state, std::vector<double>& row) {
+  const model::Motion& motion = motion_.go_to(state, model::Side::left);
   const std::size_t count = components(in_plane_).size();
   std::array<double, model::BeamForces::in_space> forces{};
   std::fill(values_.begin(), values_.end(), 0.0);
@@ -83,4 +84,4 @@ void BeamSectionForces::append(const model::Motion& motion, std::vector<double>&
     for (std::size_t i = 0; i < parts_.size(); ++i) row.push_back(values_[i * count + c]);
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results

@@ -1,12 +1,12 @@
-#include <rubato/analysis/joint_laws.hpp>
+#include <rubato/results/columns/joint_laws.hpp>
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::results {
 
-JointLaws::JointLaws(const system::Mechanism& mechanism) {
+JointLaws::JointLaws(const system::Mechanism& mechanism) : motion_(mechanism) {
   const auto take = [&](const std::string& name, const model::FreeCoordinate& s) {
     Law law{name, s, {}};
     for (const auto& element : mechanism.model().elements)
@@ -23,7 +23,7 @@ JointLaws::JointLaws(const system::Mechanism& mechanism) {
   slope_.resize(model::FreeCoordinate::most_places);
 }
 
-void JointLaws::add(results::TableLayout& layout) const {
+void JointLaws::add(TableLayout& layout) const {
   const auto add_block = [&](const std::vector<Law>& laws, const std::string& variable, const char* unit) {
     std::vector<std::string> joints;
     for (const Law& law : laws) joints.push_back(law.name);
@@ -36,7 +36,8 @@ void JointLaws::add(results::TableLayout& layout) const {
   add_block(sliding_, "law_force", "N");
 }
 
-void JointLaws::append(const model::Motion& motion, std::vector<double>& row) {
+void JointLaws::append(const system::State& state, std::vector<double>& row) {
+  const model::Motion& motion = motion_.go_to(state, model::Side::left);
   for (const auto* laws : {&turning_, &sliding_})
     for (const Law& law : *laws) row.push_back(value(law, motion));
 }
@@ -54,4 +55,4 @@ double JointLaws::value(const Law& law, const model::Motion& motion) {
   return along / square;
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results

@@ -1,9 +1,8 @@
-#include <rubato/analysis/joint_reactions.hpp>
+#include <rubato/results/columns/joint_reactions.hpp>
 
 #include <algorithm>
-#include <array>
 
-namespace rubato::analysis {
+namespace rubato::results {
 namespace {
 
 /// Of a reaction in space.
@@ -16,7 +15,7 @@ bool is_friction(const std::string& row) { return row.starts_with("friction"); }
 
 }  // namespace
 
-JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(mechanism) {
+JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(mechanism), motion_(mechanism) {
   Index row = 0;
   for (const auto& joint : mechanism.model().joints) {
     first_row_.push_back(row);
@@ -32,7 +31,7 @@ JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(
   }
 }
 
-void JointReactions::add(results::TableLayout& layout) const {
+void JointReactions::add(TableLayout& layout) const {
   if (mechanism_.model().dimension == 3) add_space(layout);
   for (const Rows& reaction : rows_) {
     const std::string unit = reaction.name.ends_with("moment") ? "N m" : "N";
@@ -47,7 +46,7 @@ void JointReactions::add(results::TableLayout& layout) const {
   }
 }
 
-void JointReactions::add_space(results::TableLayout& layout) const {
+void JointReactions::add_space(TableLayout& layout) const {
   std::vector<std::string> joints, links;
   for (const auto& reaction : mechanism_.model().reactions)
     (reaction.is_tension ? links : joints).push_back(mechanism_.model().joints[reaction.joint]->name());
@@ -61,10 +60,10 @@ void JointReactions::add_space(results::TableLayout& layout) const {
     layout.blocks.push_back({"reaction_tension", "N", "tension of each link", "reaction_tension_joint", links});
 }
 
-void JointReactions::append(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {
-  if (mechanism_.model().dimension == 3) append_space(motion, multiplier, row);
+void JointReactions::append(const system::State& state, std::vector<double>& row) {
+  if (mechanism_.model().dimension == 3) append_space(motion_.go_to(state, model::Side::left), state.multiplier, row);
   for (const Rows& reaction : rows_)
-    for (const Index i : reaction.places) row.push_back(reaction.sign * multiplier[i]);
+    for (const Index i : reaction.places) row.push_back(reaction.sign * state.multiplier[i]);
 }
 
 void JointReactions::append_space(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {
@@ -105,4 +104,4 @@ std::array<double, 6> JointReactions::wrench(const model::SpaceReaction& reactio
   return {force[0], force[1], force[2], moment[0], moment[1], moment[2]};
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results
