@@ -1,6 +1,7 @@
 #include <rubato/integrate/steady/free_motions.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
 #include <rubato/integrate/steady/undamped_resonance.hpp>
+#include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -164,62 +165,94 @@ bool PeriodicSolver::iterate_from_elsewhere(const Excitation& excitation, Steady
   return false;
 }
 
-// Newton's method from y_. A step that does not halve the residual within a few halvings leads over a kink of the flow:
-// the flow itself is followed then.
-bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
-  double best = infinity;
-  int halvings = 0, periods = 0, stretch = 4;
-  const int first = response.iterations;
-  int moves = 0;
-  near_factors_ = false;
-  Vector settled;  // the last orbit, whose offsets were moved
-  while (response.iterations < first + options_.most_iterations) {
+/// The orbit as Newton's method sees it: the iterate is y_, each evaluation a pass of the flow.
+struct PeriodicSolver::Shooting : numerics::NewtonProblem {
+  Shooting(PeriodicSolver& of, const Excitation& excitation_, SteadyResponse& response_)
+      : s(of), excitation(excitation_), response(response_) {
+    s.near_factors_ = false;
+  }
+
+  double evaluate(bool /*with_tangent*/) {
     ++response.iterations;
-    double& last = response.residual;
-    last = pass(excitation) ? residual(excitation) : infinity;
-    if (last > options_.tolerance && !(last < 0.9 * best) && best <= good_enough) {
-      // Round-off: nothing better can be had.
+    return response.residual = s.pass(excitation) ? s.residual(excitation) : infinity;
+  }
+
+  bool is_solved(double residual) { return residual <= s.options_.tolerance; }
+
+  bool factorise() {
+    const double residual = response.residual;
+    // Steps with the matrix of the pass before converge as 2 r^2 / best where that one's step was quadratic.
+    const bool factors_do = s.near_factors_ && 2.0 * residual * residual < 0.1 * s.options_.tolerance * best;
+    s.near_factors_ = false;
+    best = residual;
+    s.best_ = s.y_;
+    if (!factors_do) s.factorise();
+    return true;
+  }
+
+  double correct() {
+    const bool is_finite = s.correct();
+    const double size = is_finite ? s.size_of(excitation, s.correction_) : infinity;
+    if (size < suspicious * s.size_of(excitation, s.best_)) return size;
+    if (UndampedResonance(s.system_).is_driven_beyond_friction(excitation)) response.status = SteadyStatus::unbounded;
+    return size;
+  }
+
+  bool stops() { return response.status == SteadyStatus::unbounded; }
+
+  void move(double part) {
+    s.put(s.best_ + part * s.correction_, excitation);
+    s.near_factors_ = part == 1.0;
+  }
+
+  // A step that does not halve the residual within a few halvings leads over a kink of the flow.
+  bool is_lower(double residual, double before, double part) {
+    return is_solved(residual) || residual < (part < 1.0 ? 0.5 : 0.9) * before;
+  }
+
+  bool may_be_halved(double before) { return !(before <= good_enough); }
+
+  PeriodicSolver& s;
+  const Excitation& excitation;
+  SteadyResponse& response;
+  double best = infinity;  // residual at best_
+};
+
+// Newton's method from y_. Where its steps come no nearer the flow itself is followed.
+bool PeriodicSolver::iterate(const Excitation& excitation, SteadyResponse& response) {
+  int periods = 0, stretch = 4, moves = 0;
+  const int last = response.iterations + options_.most_iterations;
+  Vector settled;  // the last orbit, whose offsets were moved
+  numerics::NewtonRules rules;
+  rules.most_iterations = options_.most_iterations;
+  rules.most_halvings = most_halvings;
+  while (response.iterations < last) {
+    rules.most_evaluations = last - response.iterations;
+    Shooting shooting(*this, excitation, response);
+    const numerics::NewtonOutcome outcome = numerics::newton(shooting, rules).outcome;
+    if (outcome == numerics::NewtonOutcome::stopped) return false;
+    bool is_orbit = outcome == numerics::NewtonOutcome::converged;
+    if (!is_orbit && shooting.best < infinity) {
       y_ = best_;
-      last = pass(excitation) ? residual(excitation) : infinity;
-      if (!(last <= good_enough)) return false;
-      best = 0.0;  // settled
+      response.residual = shooting.best;
     }
-    if (last <= options_.tolerance || best == 0.0) {
+    if (outcome == numerics::NewtonOutcome::limit) break;
+    if (!is_orbit && shooting.best <= good_enough) {
+      // Round-off: nothing better can be had.
+      near_factors_ = true;
+      response.residual = pass(excitation) ? residual(excitation) : infinity;
+      if (!(response.residual <= good_enough)) return false;
+      is_orbit = true;
+    }
+    if (is_orbit) {
       settled = y_;
       if (moves == most_moves || !move_offsets(excitation)) return true;
       ++moves;
-      best = infinity;
-      halvings = 0;
-      near_factors_ = false;
       continue;
     }
-    // Steps with the matrix of the pass before converge as 2 last^2 / best where that one's step was quadratic.
-    const bool factors_do = near_factors_ && 2.0 * last * last < 0.1 * options_.tolerance * best;
-    near_factors_ = false;
-    if (last < (halvings > 0 ? 0.5 : 0.9) * best) {
-      best = last;
-      best_ = y_;
-      halvings = 0;
-      if (!factors_do) factorise();
-      if (correct()) {
-        put(best_ + correction_, excitation);
-        near_factors_ = true;
-        if (size_of(excitation, correction_) < suspicious * size_of(excitation, best_)) continue;
-      }
-      if (UndampedResonance(system_).is_driven_beyond_friction(excitation)) {
-        response.status = SteadyStatus::unbounded;
-        return false;
-      }
-    } else if (halvings < most_halvings && best < infinity) {
-      put(best_ + std::ldexp(1.0, -++halvings) * correction_, excitation);
-    } else {
-      if (best < infinity) y_ = best_;
-      if (periods >= options_.most_periods || !march(excitation, stretch)) return false;
-      periods += stretch;
-      stretch = std::min(2 * stretch, longest_stretch);
-      best = infinity;
-      halvings = 0;
-    }
+    if (periods >= options_.most_periods || !march(excitation, stretch)) return false;
+    periods += stretch;
+    stretch = std::min(2 * stretch, longest_stretch);
   }
   if (moves == 0) return false;
   y_ = settled;

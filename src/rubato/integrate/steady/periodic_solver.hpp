@@ -54,6 +54,7 @@ class PeriodicSolver final : public SteadySolver {
 
  private:
   class Recorder;
+  struct Shooting;
   struct Known {
     double angular_frequency = 0.0;
     long serial = 0;
