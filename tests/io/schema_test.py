@@ -214,11 +214,17 @@ class Schema(unittest.TestCase):
             self.assertEqual(check(target), (2, f"{target}: {message}"))
 
     def test_has_the_keys_that_the_reader_asks_for(self):
-        calls = (r'(?:\.|->|\b)(?:text|quantity|name|between|node|has|tables|required\w*|matrix|optional_\w+)'
-                 r'(?:<\w+>)?\((?:\*?reader, )?"(\w+)"')
+        calls = (r'(?:\.|->|\b)(?:text|quantity|node|has|optional_\w+)\("(\w+)"')
+        fields = r'\b(?:visit|inner)\.(?:template )?(\w+)(?:<\w+>)?\(\s*(?:is_force \? )?("\w+"(?: : "\w+")?)'
+        either = r'either_quantity\(\s*\{"(\w+)", "(\w+)"\}'
         asked = set()
-        for source in (root / "src" / "rubato" / "io").glob("read_*.cpp"):
+        for source in (root / "src" / "rubato" / "io").glob("read*.cpp"):
             asked |= set(re.findall(calls, source.read_text()))
+        for source in (root / "src" / "rubato" / "model" / "fields").glob("*_fields.hpp"):
+            text = source.read_text()
+            for operation, words in re.findall(fields, text):
+                asked |= set(re.findall(r"\w+", words)) if operation != "title" else set()
+            asked |= {word for pair in re.findall(either, text) for word in pair}
         known = keys_of(schema)
         # A method's own parameters are read by whatever name they have and judged by the catalogue.
         methods = set(subprocess.run([rubato, "methods", "newmark"], check=True, capture_output=True,

@@ -1,98 +1,11 @@
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/model/fields/quantity_visitor.hpp>
 #include <rubato/model/load_laws.hpp>
 #include <rubato/numerics/formula.hpp>
 
 #include <algorithm>
 
 namespace rubato::analysis {
-namespace {
-
-using Role = ParameterDependence::Role;
-
-/// Calls take(quantity, role, is_of_time) for every quantity of a law.
-template <typename Take>
-void visit_law(const model::TimeLawDescription& law, const Take& take) {
-  if (const auto* harmonic = std::get_if<model::HarmonicDescription>(&law)) {
-    take(harmonic->amplitude, Role::load, false);
-    take(harmonic->phase, Role::load, false);
-    take(harmonic->angular_frequency, Role::frequency, false);
-  } else if (const auto* formula = std::get_if<model::TimeFormulaDescription>(&law)) {
-    take(formula->formula, Role::load, true);
-  }
-}
-
-template <typename Take>
-void visit_structure(const model::StructureDescription& structure, const Take& take) {
-  const auto take_all = [&](const auto& quantities) {
-    for (const auto& quantity : quantities) take(quantity);
-  };
-  for (const auto& node : structure.nodes) {
-    take_all(node.position);
-    take_all(node.velocity);
-    take_all(node.angular_velocity);
-  }
-  for (const auto& material : structure.materials) {
-    take(material.young);
-    if (material.poisson) take(*material.poisson);
-    if (material.shear_modulus) take(*material.shear_modulus);
-    take(material.density);
-    if (material.retardation_time) take(*material.retardation_time);
-  }
-  for (const auto& section : structure.sections) {
-    take(section.area);
-    take_all(section.inertia);
-    if (section.torsion) take(*section.torsion);
-    take_all(section.shear_factor);
-  }
-  for (const auto& beam : structure.beams) take_all(beam.orientation);
-  for (const auto& mass : structure.masses) {
-    if (mass.mass) take(*mass.mass);
-    take_all(mass.inertia);
-  }
-}
-
-template <typename Take>
-void visit(const model::ModelDescription& model, const Take& take_any) {
-  const auto take = [&](const model::Quantity& quantity) { take_any(quantity, Role::structure, false); };
-  for (const auto& coordinate : model.coordinates) {
-    take(coordinate.mass);
-    take(coordinate.position);
-    take(coordinate.velocity);
-  }
-  visit_structure(model.structure, take);
-  if (model.matrices) {
-    for (const auto& [name, value] : model.matrices->position) take(value);
-    for (const auto& [name, value] : model.matrices->velocity) take(value);
-  }
-  for (const auto& spring : model.springs) take(spring.stiffness);
-  for (const auto& damper : model.dampers) take(damper.damping);
-  if (const auto* modal = std::get_if<model::ModalDamping>(&model.damping)) {
-    for (const auto& ratio : modal->ratios) take(ratio);
-    if (modal->modes) take(*modal->modes);
-  } else if (const auto* rayleigh = std::get_if<model::RayleighDamping>(&model.damping)) {
-    take(rayleigh->mass);
-    take(rayleigh->stiffness);
-  }
-  for (const auto& slider : model.sliders) {
-    take(slider.stiffness);
-    take_any(slider.friction_coefficient, Role::limit, false);
-    take_any(slider.normal_load, Role::limit, false);
-  }
-  for (const auto& stop : model.stops) {
-    take(stop.gap);
-    take(stop.stiffness);
-    take(stop.damping);
-  }
-  for (const auto& load : model::load_laws(model)) visit_law(*load.law, take_any);
-  for (const auto& force : model.distributed_forces)
-    for (const auto& share : force.direction) take(share);
-  if (model.gravity)
-    for (const auto& component : model.gravity->acceleration) take(component);
-  if (model.base_motion)
-    for (const auto& [name, value] : model.base_motion->direction) take(value);
-}
-
-}  // namespace
 
 ParameterDependence::ParameterDependence(const model::StudyDescription& study, const numerics::Parameters& values,
                                          const std::vector<std::size_t>& fixed)
@@ -104,7 +17,8 @@ ParameterDependence::ParameterDependence(const model::StudyDescription& study, c
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::find(fixed.begin(), fixed.end(), i) == fixed.end()) formula_uses_[i] = used(study.parameters[i].value);
   for (auto& uses : role_uses_) uses.resize(values.size());
-  visit(study.model, [&](const model::Quantity& quantity, Role role, bool of_time) {
+  model::for_each_quantity(study.model, [&](const model::Quantity& quantity, Role role, bool of_time) {
+    if (role == Role::none) return;
     for (const std::size_t place : used(quantity, of_time)) role_uses_[static_cast<std::size_t>(role)][place] = true;
   });
   for (const auto& load : model::load_laws(study.model)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/model/description.hpp>
+#include <rubato/model/fields/key.hpp>
 
 #include <array>
 #include <string>
@@ -11,9 +12,7 @@ namespace rubato::analysis {
 /// Which quantities of a model change when a parameter changes, directly or through parameters that depend on it.
 class ParameterDependence {
  public:
-  /// What a quantity is for: the matrices, the start, the stiffness of sliders, and where loads act (directions,
-  /// gravity); amplitude and phase of a load; its frequency; the limits of sliders.
-  enum class Role { structure, load, frequency, limit };
+  using Role = model::Role;
 
   /// @param values  of all parameters, in the order of the study
   /// @param fixed   places of parameters that keep the value given to them, whatever their formula

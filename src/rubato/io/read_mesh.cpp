@@ -60,9 +60,9 @@ class Columns {
 
 /// Calls with each row of the file that a table names.
 template <class Take>
-void for_each_row(TomlReader& reader, const StudyFolder& folder, Columns& columns, Take&& take) {
-  const std::string file = reader.text("file");
-  const std::string text = folder.read(file, reader.where("file"), largest_mesh, "the mesh");
+void for_each_row(const std::string& file, const Location& where, const StudyFolder& folder, Columns& columns,
+                  Take&& take) {
+  const std::string text = folder.read(file, where, largest_mesh, "the mesh");
   const std::string place = folder.place_of(file);
   refuse_binary(text, place, "a mesh is a text: a header with the names of the columns, and rows");
   std::size_t rows = 0;
@@ -75,10 +75,12 @@ void for_each_row(TomlReader& reader, const StudyFolder& folder, Columns& column
   if (rows == 0) throw InvalidInput({place, 0, 0}, "the file has no rows; it needs a header and a row each");
 }
 
-void read_nodes(TomlReader& reader, const StudyFolder& folder, StructureDescription& structure) {
+}  // namespace
+
+void read_mesh(const NodeFileDescription& file, const StudyFolder& folder, StructureDescription& structure) {
   const std::vector<std::string> names{"name", "x", "y", "z"};
   Columns columns(names, 3);
-  for_each_row(reader, folder, columns, [&](const Fields& fields, const Location& here) {
+  for_each_row(file.file, file.file_where, folder, columns, [&](const Fields& fields, const Location& here) {
     NodeDescription node;
     node.name = columns.text_of(fields, 0, here);
     for (std::size_t i = 1; i < names.size(); ++i)
@@ -88,15 +90,7 @@ void read_nodes(TomlReader& reader, const StudyFolder& folder, StructureDescript
   });
 }
 
-void read_beams(TomlReader& reader, const StudyFolder& folder, StructureDescription& structure) {
-  BeamDescription common;
-  common.section = reader.has("section") ? reader.name("section", &common.section_where) : "";
-  common.material = reader.has("material") ? reader.name("material", &common.material_where) : "";
-  common.lumped_mass = reader.optional_word("mass", {"consistent", "lumped"}) == "lumped";
-  if (reader.optional_word("formulation", {"timoshenko", "euler_bernoulli"}) == "euler_bernoulli")
-    common.formulation = BeamDescription::Formulation::euler_bernoulli;
-  common.orientation = reader.optional_quantities("orientation").value_or(std::vector<Quantity>{});
-  common.orientation_where = reader.where("orientation");
+void read_mesh(const BeamFileDescription& file, const StudyFolder& folder, StructureDescription& structure) {
   Columns columns({"first", "second", "name", "section", "material"}, 2);
   const auto choose = [&](std::size_t column, const std::string& key, const Fields& fields, const Location& here,
                           std::string& value, Location& where) {
@@ -108,8 +102,8 @@ void read_beams(TomlReader& reader, const StudyFolder& folder, StructureDescript
       throw InvalidInput(here,
                          fmt::format("the beam has no {0}; give [beams] \"{0}\", or the file a column \"{0}\"", key));
   };
-  for_each_row(reader, folder, columns, [&](const Fields& fields, const Location& here) {
-    BeamDescription beam = common;
+  for_each_row(file.file, file.file_where, folder, columns, [&](const Fields& fields, const Location& here) {
+    BeamDescription beam = file.common;
     beam.where = here;
     for (std::size_t i = 0; i < 2; ++i) {
       beam.nodes[i] = columns.text_of(fields, i, here);
@@ -120,19 +114,6 @@ void read_beams(TomlReader& reader, const StudyFolder& folder, StructureDescript
     choose(4, "material", fields, here, beam.material, beam.material_where);
     structure.beams.push_back(std::move(beam));
   });
-}
-
-}  // namespace
-
-void read_mesh(TomlReader& root, const StudyFolder& folder, StructureDescription& structure) {
-  if (auto reader = root.optional_table("nodes", "[nodes]")) {
-    read_nodes(*reader, folder, structure);
-    reader->finish();
-  }
-  if (auto reader = root.optional_table("beams", "[beams]")) {
-    read_beams(*reader, folder, structure);
-    reader->finish();
-  }
 }
 
 }  // namespace rubato::io

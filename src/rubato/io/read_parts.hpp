@@ -2,6 +2,7 @@
 
 #include <rubato/io/study_folder.hpp>
 #include <rubato/io/toml_reader.hpp>
+#include <rubato/model/fields/model_fields.hpp>
 
 #include <filesystem>
 
@@ -11,29 +12,24 @@ namespace rubato::io {
 /// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
 model::ModelDescription read_model(TomlReader& root, const StudyFolder& folder);
 
-/// [[node]], [[beam]] ... [[support]] and [gravity].
-void read_structure(TomlReader& root, const StudyFolder& folder, model::ModelDescription& model);
-
-/// [[body]] and [[joint]].
-void read_mechanism(TomlReader& root, const StudyFolder& folder, model::ModelDescription& model);
-
-/// [nodes] and [beams], which name CSV files, added to those of the study.
-void read_mesh(TomlReader& root, const StudyFolder& folder, model::StructureDescription& structure);
+/// The rows of the CSV files that [nodes] and [beams] name, added to those of the study.
+void read_mesh(const model::NodeFileDescription& nodes, const StudyFolder& folder,
+               model::StructureDescription& structure);
+void read_mesh(const model::BeamFileDescription& beams, const StudyFolder& folder,
+               model::StructureDescription& structure);
 
 /// [[analysis]]
 std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder);
 
-/// The keys of type = "frequency_response".
-model::FrequencyResponseDescription read_frequency_response(TomlReader& reader, const StudyFolder& folder);
-
-/// The keys of type = "damper_curve".
-model::DamperCurveDescription read_damper_curve(TomlReader& reader, const StudyFolder& folder);
-
 /// A list of numbers, or { from, to, points, spacing }.
-model::ValuesDescription to_values(TomlReader& reader, const toml::node& node, const std::string& key);
+model::ValuesDescription to_values(TomlReader& reader, const toml::node& node, const std::string& key,
+                                   const StudyFolder& folder);
 
-/// `sweep`: a grid, a list of cases or random samples of parameters.
-model::SweepDescription read_sweep(TomlReader& reader, const StudyFolder& folder);
+/// A grid, a list of cases or random samples of parameters.
+model::SweepDescription read_sweep(TomlReader& reader, const std::string& key, const StudyFolder& folder);
+
+/// The entries of a table; toml++ sorts them, and sweeps keep the order of the file.
+std::vector<std::pair<std::string, const toml::node*>> in_order_of_the_file(const toml::table& table);
 
 /// "angular_frequency" or "frequency", whichever is there: exactly one must be.
 std::string frequency_key(TomlReader& reader);
@@ -41,8 +37,8 @@ std::string frequency_key(TomlReader& reader);
 /// A method's name, or a table of its name and parameters.
 model::MethodDescription to_method(TomlReader& reader, const toml::node& node, const std::string& key);
 
-/// `observe`: a coordinate or a difference, or a list of them, each once.
-std::optional<std::vector<model::ObservationDescription>> read_observe(TomlReader& reader);
+/// A coordinate, or a difference ("blade1 - damper").
+model::ObservationDescription to_observation(const std::string& text, const Location& where);
 
 /// A CSV file whose header names parameters and whose rows are numbers; `#` begins a comment.
 model::CaseSweepDescription read_cases(const std::string& file, const StudyFolder& folder, const Location& where);

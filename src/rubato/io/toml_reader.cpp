@@ -1,4 +1,5 @@
 #include <rubato/core/excerpt.hpp>
+#include <rubato/io/schema.hpp>
 #include <rubato/io/toml_reader.hpp>
 
 #include <fmt/format.h>
@@ -29,10 +30,7 @@ std::string whole_suggestion(const std::string& name, const std::vector<std::str
 
 /// Whether the study itself has a key of this name, with such a value: a table, or a list of tables.
 bool is_part_of_the_study(const std::string& name, const toml::node& value) {
-  static const std::vector<std::string> keys{
-      "parameters",  "coordinate", "matrices",          "spring",  "damper", "damping",  "slider",      "stop", "force",
-      "base_motion", "analysis",   "distributed_force", "node",    "nodes",  "material", "section",     "beam", "beams",
-      "truss",       "mass",       "support",           "gravity", "body",   "joint",    "displacement"};
+  const std::vector<std::string>& keys = study_keys();
   const auto* list = value.as_array();
   const bool is_list = list && !list->empty() && list->front().is_table();
   return (value.is_table() || is_list) && std::find(keys.begin(), keys.end(), name) != keys.end();
@@ -68,8 +66,16 @@ bool TomlReader::has(const std::string& key) { return node(key) != nullptr; }
 const toml::node& TomlReader::required(const std::string& key) {
   const toml::node* found = node(key);
   if (found) return *found;
+  refuse_to_lack(key);
+}
+
+void TomlReader::refuse_to_lack(const std::string& key, const std::string& rest) const {
   refuse_misspelling_of(key);
-  throw InvalidInput(where(), fmt::format("{} lacks the key \"{}\"", what_, key));
+  throw InvalidInput(where(), fmt::format("{} lacks the key \"{}\"{}", what_, key, rest));
+}
+
+std::string TomlReader::name_of_part(const std::string& key) const {
+  return what_ == "the study" ? fmt::format("[{}]", key) : fmt::format("{}: {}", what_, key);
 }
 
 void TomlReader::refuse_misspelling_of(const std::string& key) const {

@@ -26,6 +26,13 @@ class TomlReader {
   Location where() const { return location(table_); }
   Location where(const std::string& key) const;
   bool has(const std::string& key);
+  /// As has(), but without making the key a known one.
+  bool table_has(const std::string& key) const { return table_.contains(key); }
+  bool has_list(const std::string& key) { return has(key) && table_.get(key)->is_array(); }
+  /// The text of a key; empty where it is missing or no text.
+  std::string plain_text(const std::string& key) { return has(key) ? table_.get(key)->value_or<std::string>("") : ""; }
+  /// What messages call a table within this one.
+  std::string name_of_part(const std::string& key) const;
 
   std::string text(const std::string& key);
   std::optional<std::string> optional_text(const std::string& key);
@@ -55,6 +62,9 @@ class TomlReader {
   void refuse_misspelling_of(const std::string& key) const;
   /// What to write in place of a key that users look for here: "a strut is a [[joint]] of type = "strut"".
   void note_elsewhere(const std::string& key, std::string what) { elsewhere_[key] = std::move(what); }
+  /// Throws for a key that must be there.
+  /// @param rest  what follows its name in the message: ": \"stop\" or \"latch\""
+  [[noreturn]] void refuse_to_lack(const std::string& key, const std::string& rest = "") const;
   /// Throws for a key that nothing asked for.
   void finish() const;
 

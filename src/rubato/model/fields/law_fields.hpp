@@ -1,0 +1,81 @@
+#pragma once
+
+#include <rubato/model/description.hpp>
+#include <rubato/model/fields/key.hpp>
+
+// The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops; and of [damping].
+namespace rubato::model {
+
+void fields(auto& visit, Like<CoordinateDescription> auto& coordinate) {
+  visit.text("name", coordinate.name, {.required = true, .says = "heads its columns in the results"});
+  visit.where(coordinate.where, "name");
+  visit.title("coordinate", coordinate.name);
+  visit.quantity("mass", coordinate.mass, {.required = true, .unit = "kg", .range = Range::positive});
+  visit.quantity("position", coordinate.position, {.unit = "m", .says = "at the start", .unless = "0"});
+  visit.quantity("velocity", coordinate.velocity, {.unit = "m/s", .says = "at the start", .unless = "0"});
+}
+
+void fields(auto& visit, Like<SpringDescription> auto& spring) {
+  visit.where(spring.where);
+  visit.between("between", spring.between, spring.between_where, {.required = true});
+  visit.quantity("stiffness", spring.stiffness, {.required = true, .unit = "N/m"});
+}
+
+void fields(auto& visit, Like<DamperDescription> auto& damper) {
+  visit.where(damper.where);
+  visit.between("between", damper.between, damper.between_where, {.required = true});
+  visit.quantity("damping", damper.damping, {.required = true, .unit = "N s/m"});
+}
+
+void fields(auto& visit, Like<SliderDescription> auto& slider) {
+  visit.numbered_name("slider", slider.name, slider.where, {.says = "heads its columns in the results"});
+  visit.between("between", slider.between, slider.between_where, {.required = true});
+  visit.quantity("stiffness", slider.stiffness,
+                 {.required = true, .unit = "N/m", .says = "kT", .range = Range::positive});
+  visit.quantity("friction_coefficient", slider.friction_coefficient,
+                 {.required = true, .unit = "-", .says = "mu", .role = Role::limit});
+  visit.quantity("normal_load", slider.normal_load, {.required = true, .unit = "N", .says = "N", .role = Role::limit});
+}
+
+void fields(auto& visit, Like<StopDescription> auto& stop) {
+  visit.numbered_name("stop", stop.name, stop.where, {.says = "heads its columns in the results"});
+  visit.between("between", stop.between, stop.between_where, {.required = true});
+  visit.quantity("gap", stop.gap,
+                 {.required = true,
+                  .unit = "m",
+                  .says = "closed where u = x_first - x_second exceeds it; negative: compressed at u = 0"});
+  visit.quantity("stiffness", stop.stiffness, {.required = true, .unit = "N/m", .says = "k", .range = Range::positive});
+  visit.quantity("damping", stop.damping,
+                 {.unit = "N s/m", .says = "c while closed; the force never pulls", .unless = "0"});
+}
+
+void fields(auto& visit, Like<ModalDamping> auto& damping) {
+  visit.where(damping.where, "modal_ratio");
+  visit.one_or_more(
+      "modal_ratio", damping.ratios, {},
+      {.required = true, .unit = "-", .says = "of the modes without sliders: one for all, or one a mode"});
+  visit.quantity("modes", damping.modes, {.says = "only so many of the lowest modes are damped"});
+}
+
+void fields(auto& visit, Like<RayleighDamping> auto& damping) {
+  visit.part("rayleigh", {.required = true, .says = "C = mass M + stiffness K"}, [&](auto& inner) {
+    inner.where(damping.where);
+    inner.quantity("mass", damping.mass, {.unit = "1/s", .unless = "0"});
+    inner.quantity("stiffness", damping.stiffness, {.unit = "s", .unless = "0"});
+    inner.some_of({"mass", "stiffness"});
+    inner.check_at_end([](auto& reader) {
+      if (!reader.has("mass") && !reader.has("stiffness"))
+        throw InvalidInput(reader.where(), reader.what() + " needs \"mass\" [1/s], \"stiffness\" [s] or both");
+    });
+  });
+}
+
+void fields(auto& visit, Like<DampingDescription> auto& damping) {
+  visit.alternatives(damping, {"modal_ratio", "rayleigh"}, [](auto& reader, int given) {
+    throw InvalidInput(reader.where(), given == 2 ? "[damping] has both \"modal_ratio\" and \"rayleigh\"; keep one"
+                                                  : "[damping] needs \"modal_ratio\" or \"rayleigh\"; a dashpot is a "
+                                                    "[[damper]]");
+  });
+}
+
+}  // namespace rubato::model
