@@ -135,7 +135,7 @@ class FormulaLaw:
             if at_a == at_b:
                 return
             middle = 0.5 * (a + b)
-            if middle <= a or middle >= b or b - a < 1e-15 * max(abs(a), abs(b), 1e-3 * (end - begin)):
+            if middle <= a or middle >= b or b - a < 1e-18 * (end - begin):  # where a row may stand on it
                 found.append(b)
                 return
             at_middle = self.formula.decisions(t=middle)
