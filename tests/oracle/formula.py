@@ -2,7 +2,7 @@
 
 `Formula(text, names)` parses once; `formula(t=1.0, k=2.0)` evaluates. Values are floats, or `Jet`s, which carry two
 derivatives along. `decisions` tells which side of each comparison, `abs`, `min`, ... was taken, so that the times at
-which a formula switches can be bracketed.
+which a formula switches can be bracketed; `along` takes them as they are told.
 
 Operators, from the loosest to the tightest: `? :` (right), `||`, `&&`, the six comparisons, `+ -`, `* /`, unary
 `- +`, `^` (right; `-2^2` is -4, `2^-1` is 0.5). Truth is any number but 0; comparisons give 0 or 1.
@@ -107,9 +107,12 @@ _SMOOTH = {
 _CHOOSING = {"abs": 1, "sign": 1, "rint": 1, "min": None, "max": None, "sum": None, "avg": None, "atan2": 2}
 
 _decisions = None
+_chosen = None
 
 
 def _decide(what):
+    if _chosen is not None:
+        return next(_chosen)
     if _decisions is not None:
         _decisions.append(what)
     return what
@@ -185,6 +188,15 @@ class Formula:
             return tuple(_decisions)
         finally:
             _decisions = None
+
+    def along(self, chosen, **values):
+        """The value with the choices of `decisions`, whatever they would be here: one smooth branch, continued."""
+        global _chosen
+        _chosen = iter(chosen)
+        try:
+            return self._tree({**CONSTANTS, **values})
+        finally:
+            _chosen = None
 
     @staticmethod
     def _split(text):

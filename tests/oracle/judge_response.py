@@ -2,8 +2,10 @@
 
 import numpy
 
+import judge_laws
 import judge_waveforms
 import steady
+from nonlinear import steady as shooting
 from structure.model import read_model
 from study import Unreadable
 from verdicts import Table, Verdict, worst
@@ -21,7 +23,7 @@ def frequency_response(study, model, analysis, table, pairs):
     solver = analysis.get("solver", "periodic")
     asked = study.number(analysis.get("tolerance", 1e-12 if solver == "periodic" else 1e-3))
     picked = list(rows)
-    if model.sliders or model.stops:
+    if model.sliders or model.stops or model.laws:
         picked = picked[::max(1, len(picked) // 2)]
     told = []
     for i in picked:
@@ -36,7 +38,12 @@ def frequency_response(study, model, analysis, table, pairs):
                 _, _, condition = steady.linear(now)
                 checks.append((f"row {i} unbounded, but the matrix is not singular", 1e12 / condition, 1.0))
             continue
-        if now.sliders or now.stops:
+        if now.laws:
+            motion, fundamental, allowed, more = _with_laws(analysis, now, table, i, solver, asked)
+            checks += more
+            waves, offsets = [(motion["q"], motion["v"])], any(
+                abs(work) == 0.0 for work in motion["slid"])
+        elif now.sliders or now.stops:
             if analysis.get("start", "unloaded") != "unloaded" and steady.sticks(now):
                 continue
             waves, offsets = None, False
@@ -111,8 +118,33 @@ def frequency_response(study, model, analysis, table, pairs):
     checks += _linear_limits(study, model, analysis, table, parameter, in_hertz)
     if not checks:
         return Verdict(name, "frequency_response", "failed" if told else "skipped", f"no row to compare {told[:1]}")
-    return worst(name, f"frequency_response {solver}" if model.sliders or solver == "time_marching"
+    return worst(name, f"frequency_response {solver}" if model.sliders or model.laws or solver == "time_marching"
                   else "frequency_response linear", checks)
+
+
+def _with_laws(analysis, now, table, i, solver, asked):
+    """The motion that repeats and is the row's: what a march from rest leads to, or else the one next to the row."""
+    allowed = 4 * asked
+    row_size = _size_of_row(analysis, now, table, i)
+    found, why = [], None
+    for start in (None, _start_of_row):
+        if start:
+            fundamental, _ = steady.orders_of(now)
+            start = start(analysis, now, table, i, fundamental)
+            if start is None:
+                continue
+        try:
+            orbit, shot = shooting.periodic(now, start=start)
+        except Unreadable as problem:
+            why = problem
+            continue
+        found.append((orbit, shot))
+        if abs(_size(analysis, now, orbit) / row_size - 1) <= allowed:
+            break
+    if not found:
+        raise why
+    orbit, shot = min(found, key=lambda o: abs(_size(analysis, now, o[0]) - row_size))
+    return orbit, shot.fundamental, allowed, judge_laws.response(now, table, i, orbit, 10 * allowed)
 
 
 def _apart(motion, other):
@@ -157,7 +189,7 @@ def _floats(model, coordinate):
 
 def _linear_limits(study, model, analysis, table, parameter, in_hertz):
     path = table.path.with_suffix(".linear.csv")
-    if not path.exists() or not model.sliders:
+    if not path.exists() or not model.sliders or model.laws:
         return []
     limits, checks = Table(path), []
     values = limits.column("angular_frequency [rad/s]")

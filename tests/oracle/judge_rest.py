@@ -2,6 +2,7 @@
 
 import numpy
 
+import judge_laws
 import modes
 import statics
 from verdicts import columns_of, condition_of, worst
@@ -39,6 +40,10 @@ def static(study, model, analysis, table, pairs):
             if table.has(header):
                 whole = stop.stiffness * (abs(stop.gap) + numpy.max(numpy.abs(state.q)))
                 checks.append((header, abs(table.column(header)[0] - state.stop_forces[i]) / whole, allowed))
+    if model.laws:
+        allowed = max(allowed, 10 * model.turns_back)
+        checks = [(what, error, max(limit, allowed)) for what, error, limit in checks]
+        checks += judge_laws.static(model, state, table, allowed)
     forces = numpy.abs(model.K) @ numpy.abs(state.q) + numpy.abs(model.load(0.0, -1))
     for i, reaction in state.reactions.items():
         for header in (f"{model.names[i]}.reaction [N]", f"{model.names[i]}.reaction_moment [N m]"):
@@ -61,7 +66,7 @@ def natural_modes(study, model, analysis, table, pairs):
         omega, s = modes.eigenvalues(model, limit)
         largest = max(numpy.max(omega), 1e-300)
         mass, damping, stiffness, f = modes.matrices(model, limit)
-        undamped = not numpy.any(model.C)
+        undamped = not numpy.any(damping)
         wanted = sorted(numpy.abs(s[(s.imag >= -1e-9 * numpy.abs(s))]))
         for place, i in enumerate(rows):
             # each eigenvalue given is one of the pencil

@@ -4,6 +4,7 @@ import re
 
 import numpy
 
+import judge_laws
 import transient as marches
 from verdicts import Table, Verdict, columns_of, worst
 
@@ -47,7 +48,9 @@ def transient(study, model, analysis, table, pairs):
             for key, header in zip(("q", "v", "a"), columns_of(model, model.names[i])):
                 size = max(numpy.max(numpy.abs(rows[key][:, i])), 1e-300)
                 checks.append((f"{header} (moved)", numpy.max(numpy.abs(got[key][:, i] - rows[key][:, i])) / size, 1e-9))
-    contacts = bool(model.sliders or model.stops)
+    kinks = any(law.remembers or law.decisions(0.0, 0.0, 0.0) for law in model.laws)
+    contacts = bool(model.sliders or model.stops or kinks)
+    whole = len(observed) == len(model.names)
     method = analysis.get("method", "generalized_alpha")
     method = method["name"] if isinstance(method, dict) else method
     step = analysis.get("step")
@@ -56,7 +59,7 @@ def transient(study, model, analysis, table, pairs):
         checks.append(("position", e, 1e-7 if contacts else 1e-8))
         checks.append(("velocity", error("v"), 1e-6 if contacts else 1e-8))
         if free == moving_free(model):
-            checks += _energies(model, table, got, pick, rows["slid"], 1e-5 if contacts else 1e-7)
+            checks += _energies(model, table, got, pick, rows, 1e-5 if contacts else 1e-7)
     elif isinstance(step, dict):
         tolerance = study.number(step["tolerance"])
         pair = method in ("dormand_prince", "bogacki_shampine")
@@ -74,7 +77,9 @@ def transient(study, model, analysis, table, pairs):
         if not contacts and not analysis.get("allow_unstable"):  # what is out of phase errs by twice its amplitude, and not by more
             checks.append(("velocity", error("v"), 2.5))
         ledger = max(2 * allowed + 1e-9, 5e-3 if contacts else 0.0)  # works are sums over steps
-        checks += _energies(model, table, got, pick, rows["slid"], ledger) if free == moving_free(model) and allowed < 1 else []
+        checks += _energies(model, table, got, pick, rows, ledger) if free == moving_free(model) and allowed < 1 else []
+        checks += judge_laws.transient(model, table, rows, got, pick, times[pick], allowed, whole,
+                                       not set(output) & {"interval", "times"})
     else:
         pair = pairs.setdefault(name.split("@")[0], [])
         pair.append((study.number(step), e, analysis.get("method")))
@@ -96,7 +101,8 @@ def transient(study, model, analysis, table, pairs):
             limit = 0.9 * e1 if contacts and order else factor * e1 * (h2 / h1)**order
             if order == 0 and not contacts:  # where a jump lies in its step, and what phase a fast mode has, is chance
                 limit = 0.3
-            checks.append((f"error at half the step (order {order})", e2, max(limit, 2e-7 if not contacts else 3e-3)))
+            checks.append((f"error at half the step (order {order})", e2, max(limit, 3e-3 if model.sliders or model.stops else 1e-5 if kinks else 2e-7)))
+            checks += judge_laws.transient(model, table, rows, got, pick, times[pick], 3 * limit + 1e-6, whole, True)
         else:
             return None
     return worst(name, "transient", checks)
@@ -112,7 +118,7 @@ def _loosely(study, analysis, model):
     return 0.5 if not isinstance(step, dict) or model.sliders or model.stops else max(0.05, 100 * study.number(step["tolerance"]))
 
 
-def _energies(model, table, got, pick, slid, allowed):
+def _energies(model, table, got, pick, rows, allowed):
     """The ledger: what is stored, by the rows themselves; what friction took, by the oracle's motion."""
     path = table.path.with_suffix(".energy.csv")
     if not path.exists():
@@ -124,6 +130,7 @@ def _energies(model, table, got, pick, slid, allowed):
     def own(part, quantity, units):
         header = next((h for h in (f"{part.name}.{quantity} [{unit}]" for unit in units) if table.has(h)), None)
         return table.column(header)[pick] if header else numpy.zeros(len(pick))
+    slid = rows["slid"]
     kinetic = 0.5 * numpy.einsum("ti,ij,tj->t", got["v"], model.M, got["v"])
     strain = 0.5 * numpy.einsum("ti,ij,tj->t", got["q"], model.K, got["q"])
     terms = 0.5 * numpy.einsum("ti,ij,tj->t", numpy.abs(got["q"]), numpy.abs(model.K), numpy.abs(got["q"]))
@@ -139,6 +146,8 @@ def _energies(model, table, got, pick, slid, allowed):
         if ledger.has(f"{header} [J]"):
             error = numpy.max(numpy.abs(ledger.column(f"{header} [J]")[pick] - value)) / whole
             checks.append((f"energy {header}", error, limit))
+    if model.laws:
+        checks += judge_laws.ledger(table, ledger, rows, pick, whole, allowed)
     return checks
 
 

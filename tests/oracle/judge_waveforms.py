@@ -22,7 +22,7 @@ def checks(study, analysis, response, parameter, allowed):
         rows = slice(begin, begin + points)
         settings = {p: table.column(p)[begin] for p in swept}
         now = read_model(study.with_parameters({**settings, parameter: w[begin] / hertz}))
-        if now.stops or now.sliders and not steady.sticks(now):
+        if now.stops or now.laws or now.sliders and not steady.sticks(now):
             continue  # a march of the oracle for each would take too long
         fundamental, answers, _ = steady.linear(now, now.stuck_stiffness())
         times = table.column("time [s]")[rows]

@@ -12,8 +12,9 @@ def free_part(model):
 def matrices(model, limit):
     f = free_part(model)
     pick = numpy.ix_(f, f)
-    stiffness = model.K if limit == "free" else model.stuck_stiffness()
-    return model.M[pick], model.C[pick], stiffness[pick], f
+    stiffness, damping = model.tangents()
+    stiffness = stiffness if limit == "free" else model.stuck_stiffness()
+    return model.M[pick], damping[pick], stiffness[pick], f
 
 
 def eigenvalues(model, limit):

@@ -4,11 +4,13 @@ import itertools
 
 import numpy
 
+from nonlinear import rest
 from study import Unreadable
 
 
 class Equilibrium:
     """q [n], forces of sliders and stops, reactions of what is held: by index."""
+    memories = None
 
     def __init__(self, q, slider_forces, stop_forces, reactions):
         self.q, self.slider_forces, self.stop_forces, self.reactions = q, slider_forces, stop_forces, reactions
@@ -20,6 +22,8 @@ def equilibrium(model, held=None):
     fixed.update({i: law.motion(0.0, -1)[0] for i, law in model.moving})
     n = len(model.names)
     load = model.load(0.0, -1) + model.held
+    if model.laws:
+        return rest.equilibrium(model, fixed, load)
     free = [i for i in range(n) if i not in fixed]
     q = numpy.zeros(n)
     for i, value in fixed.items():

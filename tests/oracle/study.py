@@ -62,6 +62,7 @@ class Study:
             return parsed(**{**constants, **variables_now})
         value.parsed = parsed
         value.decisions = lambda **now: parsed.decisions(**{**constants, **now})
+        value.along = lambda chosen, **now: parsed.along(chosen, **{**constants, **now})
         return value
 
     def table(self, name):

@@ -3,6 +3,7 @@
 import numpy
 
 from flow import Flow
+from nonlinear.march import March
 from statics import equilibrium
 
 
@@ -13,19 +14,22 @@ def start_of(model, analysis):
         state = equilibrium(model, held)
         slips = [slider.b @ state.q - force / slider.stiffness
                  for slider, force in zip(model.sliders, state.slider_forces)]
-        return state.q, model.v0.copy(), slips
-    return model.q0.copy(), model.v0.copy(), [slider.b @ model.q0 for slider in model.sliders]
+        return state.q, model.v0.copy(), slips, state.memories
+    return model.q0.copy(), model.v0.copy(), [slider.b @ model.q0 for slider in model.sliders], None
 
 
 def begin(model, analysis, end, **options):
-    q, v, slips = start_of(model, analysis)
+    q, v, slips, memories = start_of(model, analysis)
+    if model.laws:
+        return March(model, 0.0, end, q, v, slips, memories, **options)
     return Flow(model, 0.0, end, q, v, slips, **options)
 
 
 def march(model, analysis, times, **options):
-    """Arrays [times x ...]: q, v, a, slider forces, slips, stop forces, friction work; and the flow at its end."""
+    """Arrays [times x ...]: q, v, a, slider forces, slips, stop forces, friction work, what laws tell; and the flow at its end."""
     flow = begin(model, analysis, times[-1], **options)
-    rows = {key: [] for key in ("q", "v", "a", "slider_force", "slip", "stop_force", "slid")}
+    rows = {key: [] for key in ("q", "v", "a", "slider_force", "slip", "stop_force", "slid", "law_displacement",
+                                  "law_force", "law_stored", "law_dissipated")}
     for t in times:
         flow.advance(t)
         q, v = flow.full()
@@ -36,4 +40,6 @@ def march(model, analysis, times, **options):
         rows["slip"].append([flow.slip(i) for i in range(len(model.sliders))])
         rows["slid"].append(sum(flow.slid))
         rows["stop_force"].append([flow.stop_force(i) for i in range(len(model.stops))])
+        for key, value in zip(("law_displacement", "law_force", "law_stored", "law_dissipated"), flow.law_row() if model.laws else ()):
+            rows[key].append(value)
     return {key: numpy.array(value) for key, value in rows.items()}, flow

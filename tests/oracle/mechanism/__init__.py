@@ -15,13 +15,14 @@ from mechanism.beams import Beams
 from mechanism.joints import GROUND, Joints
 from mechanism.kinematics import Kinematics, State, moved
 from mechanism.laws import Laws
+from mechanism.local_laws import ReadsLocalLaws
 from mechanism.parts import Parts
 from study import Unreadable as Refused
 
 __all__ = ["GROUND", "Mechanism", "Refused", "State", "moved"]
 
 
-class Mechanism(Parts, Joints, Kinematics, Laws, Beams):
+class Mechanism(Parts, Joints, Kinematics, Laws, ReadsLocalLaws, Beams):
     """The mechanism of a `Study`."""
 
     def __init__(self, source):
@@ -50,3 +51,4 @@ class Mechanism(Parts, Joints, Kinematics, Laws, Beams):
             self._read_joint(table)
         self._freeze()
         self._read_forces()
+        self._read_local_laws()

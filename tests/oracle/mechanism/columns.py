@@ -155,7 +155,8 @@ def sections(march, state, row):
 
 
 def transient_row(march, state, t, works):
-    kin = march.model.scalars(state)
+    m = march.model
+    kin = m.scalars(state)
     a, mu, _ = march.instant(state, t, kin)
     row = {"time [s]": t}
     row.update(motion(march, state, a))
@@ -163,8 +164,22 @@ def transient_row(march, state, t, works):
     row.update(joints(march, state, t, kin, a, mu))
     if shared:      # of reactions that joints share nothing is asked
         row.update({k: np.nan for k in row if k.endswith("[N]") or k.endswith("[N m]")})
+    laws(march, works, row)
     _, tally = march.applied(state, t, kin, tally=True)
     energy = {"time [s]": t, "kinetic [J]": march.kinetic(state), "strain [J]": tally["stored"],
               "damper_dissipated [J]": works[0], "friction_dissipated [J]": works[1], "lock_dissipated [J]": march.lost,
               "load_work [J]": works[2], "drive_work [J]": works[3]}
+    if m.local_laws:
+        energy["law_stored [J]"] = sum(law.stored(u, z) for law, (u, _, _, z) in zip(m.local_laws, march.local_told))
+        energy["law_dissipated [J]"] = sum(works[4:])
     return row, energy
+
+
+def laws(march, works, row):
+    """By either name of what turns."""
+    for law, (u, _, f, _), lost in zip(march.model.local_laws, march.local_told, works[4:]):
+        for quantity in ("force [N]", "moment [N m]") if law.rotation else ("force [N]",):
+            row[f"{law.name}.{quantity}"] = f
+        for quantity in ("displacement [m]", "angle [rad]", "relative_angle [rad]") if law.rotation else ("displacement [m]",):
+            row[f"{law.name}.{quantity}"] = u
+        row[f"{law.name}.dissipated [J]"] = lost

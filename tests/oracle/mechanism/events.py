@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 from scipy.optimize import brentq
 
+from mechanism.local_laws import NEAR
 from study import Unreadable as Refused
 
 
@@ -48,7 +49,8 @@ class Events:
         return out
 
     def first_event(self, dense, t0, t1):
-        if not self.locks and not self.dry:
+        laws = any(law.remembers for law in self.model.local_laws)
+        if not self.locks and not self.dry and not laws:
             return None
         for d in self.dry:
             if d.going is not None and len(d.maps) == 2 and not d.fresh:
@@ -62,7 +64,7 @@ class Events:
             if before is None:
                 before = self.guards(self.unpack(dense(a))[0], a)
             after = self.guards(self.unpack(dense(b))[0], b)
-            hits = []
+            hits = self._turns(dense, a, b) if laws else []
             for k, ((what, x), (_, y)) in enumerate(zip(before, after)):
                 if x > 0 >= y or (x == 0 > y and what[0] != "meets"):
                     f = lambda t: self.guards(self.unpack(dense(t))[0], t)[k][1]
@@ -73,6 +75,20 @@ class Events:
                 return min(hits, key=lambda h: h[0])
             before = after
         return None
+
+    def _turns(self, dense, a, b):
+        """Borders of laws that are passed between a and b."""
+        def local(t):
+            state = self.unpack(dense(t))[0]
+            return self.local_guards(state, self.model.scalars(state))
+        hits = []
+        local(a)
+        for k, (what, value) in enumerate(local(b)):
+            if value >= -NEAR:
+                continue
+            f = lambda t: local(t)[k][1] + NEAR
+            hits.append((brentq(f, a, b, xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-14) if f(a) > 0 else a, what))
+        return hits
 
     def change(self, state, t, what):
         kind, item = what

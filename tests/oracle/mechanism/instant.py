@@ -74,6 +74,8 @@ class Instant:
                     Q[column] -= sign * force
             stored += k * x * x / 2
             damper_power += c * v * v
+        local, self.local_told = self.local_forces(state, t, (S, dS, S1, S2))
+        Q = Q + local
         ways = m.way_map @ S + m.way_constant
         rates = m.way_map @ S1
         self.law_force = {}

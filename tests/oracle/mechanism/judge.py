@@ -103,6 +103,8 @@ def transient(study, analysis, folder, start=None):
         k = next(told)
         row, energy = transient_row(march, state, t, works)
         there = state_of_row(march, {name: v[k] for name, v in theirs.items()})
+        if there is not None:
+            there.memories = told_memories(march, {name: v[k] for name, v in theirs.items()}, state)
         return row, energy, None if there is None else transient_row(march, there, t, works)[0]
     pairs = march.run(duration, times, start=start, columns=both)
     ours = {k: np.array([p[0].get(k, np.nan) for p in pairs]) for k in pairs[0][0]}
@@ -110,6 +112,18 @@ def transient(study, analysis, folder, start=None):
     if all(p[2] is not None for p in pairs):
         there = {k: np.array([p[2].get(k, np.nan) for p in pairs]) for k in pairs[0][2]}
     return march, model, ours, theirs, pairs, there
+
+
+def told_memories(march, row, state):
+    """What the elements of a row remember, by their forces."""
+    out = np.array(state.memories if state.memories is not None else np.zeros(len(march.model.local_laws)))
+    for k, law in enumerate(march.model.local_laws):
+        f = next((row[n] for n in (f"{law.name}.force [N]", f"{law.name}.moment [N m]") if n in row), None)
+        u = next((row[n] for n in (f"{law.name}.displacement [m]", f"{law.name}.angle [rad]", f"{law.name}.relative_angle [rad]")
+                  if n in row), None)
+        if law.remembers and law.alpha < 1 and f is not None and u is not None:
+            out[k] = (f - law.alpha * law.k * u) / ((1 - law.alpha) * law.k)
+    return out
 
 
 def near(times, events, reach):
@@ -150,7 +164,8 @@ def judge_transient(study, analysis, folder, tolerance):
             errors.update(more)
             missing += lacking
     if belongs:      # the forces are judged where they belong
-        errors = {c: e for c, e in errors.items() if unit_of(c) not in FORCES}
+        of_laws = tuple(law.name + "." for law in model.local_laws)
+        errors = {c: e for c, e in errors.items() if unit_of(c) not in FORCES or c.startswith(of_laws)}
     beyond = {c: e for c, e in errors.items() if not e <= MOST * tolerance * LOOSER.get(unit_of(c), 1)}
     grown = {}
     if beyond and tolerance < 1e-3:
@@ -214,7 +229,7 @@ def judge_static(study, analysis, folder):
     """What is told must be in balance: of several equilibria any will do, and of those that a motion does not leave."""
     march = March(Mechanism(study))
     state = told_equilibrium(study, march, folder)
-    ours = transient_row(march, state, 0.0, np.zeros(4))[0]
+    ours = transient_row(march, state, 0.0, np.zeros(march.works))[0]
     theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")
     one = {k: np.array([v]) for k, v in ours.items()}
     force = max(np.max(np.abs(march.applied(state, 0.0)[march.model.free % 6 < 3]), initial=0.0),
@@ -249,6 +264,8 @@ def judge_modes(study, analysis, folder):
         state = march.run(duration, [at], start=start)[0][1]
         march.window = (at, np.inf)      # loads of that instant, not of the last stretch of the march
         coarse = 1e6 * 100 * study.number(transient_of["step"]["tolerance"])
+    if march.has_memories(state):
+        raise Refused("modes about a state that a Bouc-Wen element remembers: loading and unloading have tangents of their own")
     C, K, G, Z, out = modes_about(march, state, at)
     ours = eigenvalues(C, K, Z)
     theirs = read_csv(pathlib.Path(folder) / f"{analysis['name']}.csv")

@@ -137,14 +137,15 @@ class Kinematics:
 
 
 class State:
-    """Where everything is: places [n, 3], quaternions [n, 4], velocities [nf], plane angles [n], counted turns."""
+    """Where everything is: places [n, 3], quaternions [n, 4], velocities [nf], plane angles [n], counted turns, memories of laws."""
 
-    def __init__(self, r, q, u, angle, turns):
-        self.r, self.q, self.u, self.angle, self.turns = r, q, u, angle, turns
+    def __init__(self, r, q, u, angle, turns, memories=None):
+        self.r, self.q, self.u, self.angle, self.turns, self.memories = r, q, u, angle, turns, memories
         self.R = matrix_of(q)
 
     def copy(self):
-        return State(self.r.copy(), self.q.copy(), self.u.copy(), self.angle.copy(), self.turns.copy())
+        memories = None if self.memories is None else self.memories.copy()
+        return State(self.r.copy(), self.q.copy(), self.u.copy(), self.angle.copy(), self.turns.copy(), memories)
 
 
 def moved(model, state, dq):
@@ -152,7 +153,8 @@ def moved(model, state, dq):
     step = model.all_velocities(dq)
     q = product(state.q, quaternion_of(step[:, 3:]))
     q /= np.linalg.norm(q, axis=1)[:, None]
-    out = State(state.r + step[:, :3], q, state.u.copy(), state.angle + step[:, 5] if not model.space else state.angle, state.turns.copy())
+    out = State(state.r + step[:, :3], q, state.u.copy(), state.angle + step[:, 5] if not model.space else state.angle, state.turns.copy(),
+                None if state.memories is None else state.memories.copy())
     if len(model.atans):
         out.turns = model.scalars(out)[0][model.first_atan : model.first_atan + len(model.atans)]
     return out

@@ -12,10 +12,11 @@ from mechanism import Mechanism, Refused, State, moved
 from mechanism.events import Events
 from mechanism.friction import Lock, ReadsFriction
 from mechanism.instant import Instant
+from mechanism.local_laws import MarchesLocalLaws
 from mechanism.rotations import product
 
 
-class March(ReadsFriction, Instant, Events):
+class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
     def __init__(self, model: Mechanism, rtol=1e-10):
         self.model, self.rtol = model, rtol
         m = model
@@ -30,6 +31,8 @@ class March(ReadsFriction, Instant, Events):
         self.window = (0.0, math.inf)
         self.drives = [j for j in m.joints if j.drive_formula is not None or j.drive_points is not None]
         self._read_friction()
+        self._read_local_memories()
+        self.works = 4 + len(model.local_laws)      # of dampers, friction, loads, drives and each law
 
     def _size(self):
         places = [p for p in self.model.start_r[1:]]
@@ -41,21 +44,23 @@ class March(ReadsFriction, Instant, Events):
 
     # ---- packing ----------------------------------------------------------------------------------------------------
     def pack(self, state, works):
+        memories = state.memories if state.memories is not None else np.zeros(len(self.model.local_laws))
         if self.model.space:
-            return np.concatenate([state.r.ravel(), state.q.ravel(), state.u, state.turns, works])
-        return np.concatenate([state.r[:, :2].ravel(), state.angle, state.u, works])
+            return np.concatenate([state.r.ravel(), state.q.ravel(), state.u, state.turns, memories, works])
+        return np.concatenate([state.r[:, :2].ravel(), state.angle, state.u, memories, works])
 
     def unpack(self, y):
         m, n = self.model, len(self.model.names)
+        works, memories = y[len(y) - self.works :], y[len(y) - self.works - len(m.local_laws) : len(y) - self.works]
         if m.space:
             r, q = y[: 3 * n].reshape(n, 3), y[3 * n : 7 * n].reshape(n, 4)
-            return State(r, q, y[7 * n : 7 * n + m.nf], m.start_angle, y[7 * n + m.nf : 7 * n + m.nf + len(m.atans)]), y[-4:]
+            return State(r, q, y[7 * n : 7 * n + m.nf], m.start_angle, y[7 * n + m.nf : 7 * n + m.nf + len(m.atans)], memories), works
         r = np.zeros((n, 3))
         r[:, :2] = y[: 2 * n].reshape(n, 2)
         angle = y[2 * n : 3 * n]
         q = np.zeros((n, 4))
         q[:, 0], q[:, 3] = np.cos(angle / 2), np.sin(angle / 2)
-        return State(r, q, y[3 * n : 3 * n + m.nf], angle, np.zeros(0)), y[-4:]
+        return State(r, q, y[3 * n : 3 * n + m.nf], angle, np.zeros(0), memories), works
 
     def slope(self, t, y):
         m = self.model
@@ -72,7 +77,8 @@ class March(ReadsFriction, Instant, Events):
         drive = 0.0
         for k, j in enumerate(self.drives):
             drive += mu[len(m.row_map) + k] * m.drive_at(j, self.clamp(t))[1]
-        works = [tally["damper"], friction, tally["load"], drive]
+        memory_rates, lost = self.local_slopes(self.local_told)
+        works = memory_rates + [tally["damper"], friction, tally["load"], drive] + lost
         if m.space:
             q1 = product(state.q, np.concatenate([np.zeros((len(u), 1)), u[:, 3:]], axis=1)) / 2
             atans = kin[2][m.first_atan : m.first_atan + len(m.atans)]
@@ -124,6 +130,8 @@ class March(ReadsFriction, Instant, Events):
         m = self.model
         self.window = (0.0, math.inf)
         state = state if state is not None else m.start_state()
+        if state.memories is None:
+            state.memories = np.zeros(len(m.local_laws))
         ways = m.way_map @ m.scalars(m.start_state())[0] + m.way_constant
         self.rest_default = ways.copy()
         for d in self.dry:
@@ -159,6 +167,9 @@ class March(ReadsFriction, Instant, Events):
         found = set()
         for *_, law in m.forces:
             found.update(law.switches(0.0, duration))
+        for law, u in zip(m.local_laws, self.starts):
+            if not law.remembers and "t" in law.used:
+                found.update(_switches(lambda t: law.decisions(u, 0.0, t), 0.0, duration))
         for j in m.joints:
             if j.formula is not None and "t" in j.formula.parsed.used:
                 ways = {j.formula_way: float(self.rest_default[j.way]), "rate": 0.0}
@@ -178,7 +189,7 @@ class March(ReadsFriction, Instant, Events):
         state = self.begin(start)
         if self.led:
             raise Refused("a dry joint that a drive leads")
-        works = np.zeros(4)
+        works = np.zeros(self.works)
         self.duration = duration
         marks = self.breaks(duration) + [duration]
         t = 0.0
@@ -186,6 +197,7 @@ class March(ReadsFriction, Instant, Events):
         self.rates_scale = self._rate_scale(state, duration)
         self.settle_by_rates(state)
         state = self.settle(state, t)
+        self.settle_local(state, t)
         out, next_time = [], 0
         times = list(times)
 
@@ -198,9 +210,11 @@ class March(ReadsFriction, Instant, Events):
                 u0 = state.u
                 state, work = self.impulse(state, t)
                 if np.linalg.norm(state.u - u0) > 1e-12 * self.rates_scale:
-                    works = works + np.array([0.0, 0.0, 0.0, work])
+                    works = works.copy()
+                    works[3] += work
                     self.settle_by_rates(state)
                 state = self.settle(state, t)
+                self.settle_local(state, t)
             while t < mark:
                 solver = DOP853(self.slope, t, self.pack(state, works), mark, rtol=self.rtol, atol=self._atol(state))
                 found = None
@@ -235,7 +249,14 @@ class March(ReadsFriction, Instant, Events):
                     state = self.project(s.copy(), t, tries=3)
                     works = works.copy()
                     self.driven = 0.0
+                    if found[1][0] in ("turns", "vanishes"):
+                        self.change_local(found[1])
+                        self.turned = getattr(self, "turned", 0) + 1
+                        if self.turned > 5000:
+                            raise Refused("too many turns of laws")
+                        continue
                     state = self.change(state, t, found[1])
+                    self.settle_local(state, t)
                     works[3] += self.driven
                     if len(self.events) > 400:
                         raise Refused("too many events")
@@ -252,7 +273,7 @@ class March(ReadsFriction, Instant, Events):
         return max(np.linalg.norm(state.u), 1e-3 * self.box / duration)
 
     def _atol(self, state):
-        y = self.pack(state, np.zeros(4))
+        y = self.pack(state, np.zeros(self.works))
         n, nf = len(self.model.names), self.model.nf
         places = 3 * n if self.model.space else 2 * n
         turns = 4 * n if self.model.space else n
@@ -266,7 +287,9 @@ class March(ReadsFriction, Instant, Events):
         atol[places + turns + nf :] = self.rtol
         # works are integrals that nothing else watches: laws may have kinks where the motion has none
         mass = np.max(np.diag(self.model.M)[w < 3], initial=np.max(np.diag(self.model.M)) / self.box**2)
-        atol[-4:] = 1e-7 * max(self.kinetic(state), mass * (self.box / self.duration) ** 2)
+        sizes = [min(law.z_max, law.A * (1.0 if law.rotation else self.box)) if law.remembers else 1.0 for law in self.model.local_laws]
+        atol[len(y) - self.works - len(sizes) : len(y) - self.works] = self.rtol * np.array(sizes)
+        atol[len(y) - self.works :] = 1e-7 * max(self.kinetic(state), mass * (self.box / self.duration) ** 2)
         return atol
 
     def kinetic(self, state):

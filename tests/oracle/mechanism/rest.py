@@ -27,6 +27,14 @@ def step_sizes(march):
 
 def stiffness(march, state, mu, t=0.0, rule=((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))):
     """-d(Q + G^T mu)/dq [nf x nf], by differences of sixth order unless another rule is given."""
+    march.linearised = march.linearise(state, t)
+    try:
+        return _stiffness(march, state, mu, t, rule)
+    finally:
+        march.linearised = None
+
+
+def _stiffness(march, state, mu, t, rule):
     m = march.model
     eps = step_sizes(march)
     K = np.empty((m.nf, m.nf))
@@ -207,6 +215,8 @@ def equilibrium_at(march, state):
 
 def let_go(march, state, velocities=False):
     """The start of a march from an equilibrium: with the velocities given, or at rest."""
+    march.standing = True
+    state.memories = march.memories(state, march.model.scalars(state))
     for d in march.dry:
         d.resting = False
         d.place = d.maps @ march.model.scalars(state)[0]

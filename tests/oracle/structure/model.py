@@ -1,4 +1,4 @@
-"""From a study to `M a + C v + K q + sliders and stops = f(t)`, dense."""
+"""From a study to `M a + C v + K q + sliders, stops and laws = f(t)`, dense."""
 
 import csv
 import math
@@ -7,6 +7,7 @@ import numpy
 import scipy.io
 import scipy.linalg
 
+from nonlinear.laws import read_laws
 from structure import elements
 from study import HarmonicLaw, Unreadable
 
@@ -66,10 +67,19 @@ class Model:
         return self.column([first.strip(), second.strip()])
 
     def stuck_stiffness(self):
-        stiffness = self.K.copy()
+        stiffness = self.tangents()[0]
         for slider in self.sliders:
             stiffness += slider.stiffness * numpy.outer(slider.b, slider.b)
         return stiffness
+
+    def tangents(self):
+        """Stiffness and damping without sliders; laws by their tangents at the start, at rest."""
+        stiffness, damping = self.K.copy(), self.C.copy()
+        for law in self.laws:
+            k, c = law.tangents(law.b @ self.q0)
+            stiffness += k * numpy.outer(law.b, law.b)
+            damping += c * numpy.outer(law.b, law.b)
+        return stiffness, damping
 
 
 def _name(value):
@@ -103,6 +113,7 @@ def read_model(study):
         b = model.column(part["between"])
         model.C += study.number(part["damping"]) * numpy.outer(b, b)
     _contacts(study, model)
+    _laws(study, model)
     _displacements(study, model)
     model.loads, model.held = [], numpy.zeros(len(model.names))
     _loads(study, model, assembly, free)
@@ -307,6 +318,15 @@ def _contacts(study, model):
         model.stops.append(Stop(_name(part.get("name", f"stop{i + 1}")), b, study.number(part["gap"]),
                                 study.number(part["stiffness"]), study.number(part.get("damping", 0.0)),
                                 _rotates(model, b)))
+
+
+def _laws(study, model):
+    def place(part):
+        if "joint" in part:
+            raise Unreadable("a joint of a structure")
+        b = model.column(part["between"])
+        return b, _rotates(model, b)
+    model.laws = read_laws(study, place)
 
 
 def _rotates(model, b):
