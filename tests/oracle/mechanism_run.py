@@ -20,7 +20,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import numpy as np  # noqa: E402
 
-from random_mechanism import generate  # noqa: E402
+from random_mechanism import generate, with_laws  # noqa: E402
 from run import keys_of  # noqa: E402
 from mechanism import Mechanism  # noqa: E402
 from mechanism.judge import LOOSER, judge, unit_of  # noqa: E402
@@ -144,7 +144,7 @@ def main():
         began = resource.getrusage(resource.RUSAGE_SELF).ru_utime
         with tempfile.TemporaryDirectory() as scratch:
             folder = pathlib.Path(options.keep or scratch) / str(seed)
-            path = generate(seed, folder)
+            path = (with_laws.generate if seed >= with_laws.FIRST else generate)(seed, folder)
             for name, kind, outcome, what in verdicts(options.command, path, folder / "results"):
                 counts[kind][outcome] += 1
                 for key in keys_of(path, name) if options.keys else []:

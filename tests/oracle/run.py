@@ -14,6 +14,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import compare  # noqa: E402
 import generate  # noqa: E402
+import generate_laws  # noqa: E402
 import generate_more  # noqa: E402
 
 
@@ -95,7 +96,9 @@ def main():
             name = seed if isinstance(seed, int) else pathlib.Path(seed).stem
             folder = pathlib.Path(options.keep) / str(name) if options.keep else pathlib.Path(scratch)
             if isinstance(seed, int):
-                path, kind = (generate_more if seed >= generate_more.FIRST else generate).generate(seed, folder)
+                source = next(g for first, g in ((generate_laws.FIRST, generate_laws), (generate_more.FIRST, generate_more), (0, generate))
+                              if seed >= first)
+                path, kind = source.generate(seed, folder)
             else:
                 path, kind = laid(seed, folder), "file"
             told = []
