@@ -136,6 +136,11 @@ void SchemaVisitor::take_one_of(const std::vector<SchemaVisitor>& all) {
         properties_.set(one.keys()[i], one.properties_.values()[i]);
         keys.push_back(one.keys()[i]);
       }
+  for (const std::string& key : all.front().required_)
+    if (std::all_of(all.begin(), all.end(), [&](const SchemaVisitor& one) {
+          return std::find(one.required_.begin(), one.required_.end(), key) != one.required_.end();
+        }))
+      required_.push_back(key);
   Json choices = Json::array();
   for (const SchemaVisitor& one : all) {
     Json choice = Json::object();

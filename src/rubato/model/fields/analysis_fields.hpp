@@ -11,27 +11,40 @@ namespace rubato::model {
 /// The table of a step that chooses itself.
 void fields(auto& visit, StepDescription& step) {
   visit.where(step.where);
-  visit.quantity("tolerance", step.tolerance,
-                 {.required = true,
-                  .unit = "-",
-                  .says = "of local_error and embedded the error at the end over the size of the response"});
-  visit.word("controller", step.controller, {{"pi", "pi"}, {"cardona_cassano", "cardona_cassano"}, {"fixed", "fixed"}},
-             {.says = "what picks the next step", .unless = "pi"});
-  visit.word("estimator", step.estimator,
-             {{"local_error", "local_error"}, {"inertia_jump", "inertia_jump"}, {"embedded", "embedded"}},
-             {.says = "what measures the error",
-              .unless = "local_error; inertia_jump with cardona_cassano; embedded where the method has a pair"});
-  visit.quantity("first", step.first, {.unit = "s", .says = "the first step", .unless = "from the response expected"});
+  visit.quantity(
+      "tolerance", step.tolerance,
+      {.required = true,
+       .unit = "-",
+       .says =
+           "of local_error and embedded the error at the end over the size of the response; of inertia_jump that of "
+           "its source"});
+  visit.word(
+      "controller", step.controller, {{"pi", "pi"}, {"cardona_cassano", "cardona_cassano"}, {"fixed", "fixed"}},
+      {.says = "what picks the next step; cardona_cassano has four actions (1991), fixed keeps the first step and the "
+               "error is watched",
+       .unless = "pi"});
+  visit.word(
+      "estimator", step.estimator,
+      {{"local_error", "local_error"}, {"inertia_jump", "inertia_jump"}, {"embedded", "embedded"}},
+      {.says = "what measures the error: local_error (alpha family), embedded (explicit pairs, and Wilson-theta where "
+               "there are no stops) or inertia_jump (methods of second order that carry an acceleration)",
+       .unless = "what suits the method; inertia_jump with cardona_cassano and a method of second order"});
+  visit.quantity("first", step.first,
+                 {.unit = "s", .says = "the first step", .unless = "from the response expected; needed by fixed"});
   visit.quantity(
       "smallest", step.smallest,
       {.unit = "s", .says = "the run ends where a smaller step is asked for", .unless = "1e-12 of the duration"});
-  visit.quantity("largest", step.largest,
-                 {.unit = "s",
-                  .says = "no step is larger",
-                  .unless = "a fiftieth of the duration, at most a sixth of the shortest period of a load"});
-  visit.word("events", step.locate_events, {{"locate", true}, {"pass", false}},
-             {.says = "end a step where a slider or a stop changes its state, or pass over it",
-              .unless = "locate stops, and sliders with embedded pairs"});
+  visit.quantity(
+      "largest", step.largest,
+      {.unit = "s",
+       .says = "no step is larger",
+       .unless = "a fiftieth of the duration, at most a sixth of the shortest period of a harmonic load, and nine "
+                 "tenths of the stability limit; while a formula swings, at most a sixth of its swing"});
+  visit.word(
+      "events", step.locate_events, {{"locate", true}, {"pass", false}},
+      {.says = "end a step where a slider sticks or slips anew and where a stop closes or opens, or pass over it",
+       .unless = "locate stops, and sliders with the pairs bogacki_shampine and dormand_prince, whose estimate "
+                 "does not see them"});
   visit.quantity_or_word(
       "reference", step.reference, step.reference_is_initial, "initial",
       {.unit = "m sqrt(kg)",
@@ -47,25 +60,28 @@ void fields(auto& visit, OutputDescription& output) {
   std::optional<long> every;
   std::optional<Quantity> interval;
   std::vector<Quantity> times;
-  visit.part("output", {.says = "which times are written", .unless = "every step"}, [&](auto& inner) {
-    inner.where(output.where);
-    inner.whole("every", every, {1}, {.says = "every n-th step"});
-    inner.quantity("interval", interval, {.unit = "s", .says = "between two rows"});
-    inner.quantities("times", times, {}, {.unit = "s", .says = "rising"});
-    inner.exactly_one_of({"every", "interval", "times"});
-    inner.check_at_end([&](auto& reader) {
-      if (every.has_value() + interval.has_value() + !times.empty() != 1)
-        throw InvalidInput(
-            reader.where(),
-            reader.what() + " needs exactly one of \"every\" (steps), \"interval\" [s] and \"times\" [s]");
-      if (every && (*every < 1 || *every > 2'000'000'000))
-        throw InvalidInput(reader.where("every"), fmt::format("every must be at least 1, got {}", *every));
-      output.kind = every ? Kind::every : interval ? Kind::interval : Kind::times;
-      output.every = static_cast<int>(every.value_or(1));
-      if (interval) output.interval = *interval;
-      output.times = times;
-    });
-  });
+  visit.part(
+      "output",
+      {.says = "which times are written", .unless = "every step; of exact its transitions and 64 samples a period"},
+      [&](auto& inner) {
+        inner.where(output.where);
+        inner.whole("every", every, {1}, {.says = "every n-th step"});
+        inner.quantity("interval", interval, {.unit = "s", .says = "between two rows"});
+        inner.quantities("times", times, {}, {.unit = "s", .says = "rising"});
+        inner.exactly_one_of({"every", "interval", "times"});
+        inner.check_at_end([&](auto& reader) {
+          if (every.has_value() + interval.has_value() + !times.empty() != 1)
+            throw InvalidInput(
+                reader.where(),
+                reader.what() + " needs exactly one of \"every\" (steps), \"interval\" [s] and \"times\" [s]");
+          if (every && (*every < 1 || *every > 2'000'000'000))
+            throw InvalidInput(reader.where("every"), fmt::format("every must be at least 1, got {}", *every));
+          output.kind = every ? Kind::every : interval ? Kind::interval : Kind::times;
+          output.every = static_cast<int>(every.value_or(1));
+          if (interval) output.interval = *interval;
+          output.times = times;
+        });
+      });
 }
 
 inline constexpr Key duration_key{.required = true, .unit = "s"};
@@ -88,12 +104,16 @@ void observe_field(auto& visit, std::optional<std::vector<ObservationDescription
 }
 
 void fields(auto& visit, TransientDescription& transient) {
-  visit.method("method", transient.method,
-               {.says = "a method's name, or a table of its name and parameters; `rubato methods` lists them",
-                .unless = "generalized_alpha"});
-  visit.quantity_or_part("step", transient.step,
-                         {.unit = "s", .says = "or a table for steps that choose themselves; not for the method exact"},
-                         [&](auto& inner) { fields(inner, transient.automatic_step.emplace()); });
+  visit.method(
+      "method", transient.method,
+      {.says =
+           "a method's name, or a table of its name and parameters such as { name = \"hht\", alpha = -0.1 }; `rubato "
+           "methods` lists them",
+       .unless = "generalized_alpha"});
+  visit.quantity_or_part(
+      "step", transient.step,
+      {.unit = "s", .says = "or a table for steps that choose themselves; needed, but not for the method exact"},
+      [&](auto& inner) { fields(inner, transient.automatic_step.emplace()); });
   visit.quantity("duration", transient.duration, duration_key);
   fields(visit, transient.output);
   observe_field(visit, transient.observe);
@@ -140,7 +160,7 @@ void fields(auto& visit, ReachedDescription& reached) {
 }
 
 void fields(auto& visit, ModesDescription& modes) {
-  visit.quantity("count", modes.count, {.says = "the lowest so many modes", .unless = "all, at most 20"});
+  visit.quantity("count", modes.count, {.says = "the lowest so many modes of each limit", .unless = "all, at most 20"});
   visit.observe(
       "observe", modes.observe,
       {.says = "coordinates whose shapes are kept, or differences such as \"blade1 - damper\"", .unless = "all"});
@@ -188,22 +208,28 @@ void fields(auto& visit, FrequencyResponseDescription& task) {
   visit.where(task.route_where, "solver");
   visit.word("start", task.start,
              {{"unloaded", Task::Start::unloaded}, {"previous", Task::Start::previous}, {"rest", Task::Start::rest}},
-             {.says = "what a slider that never slips remembers", .unless = "unloaded"});
+             {.says = "what a slider that never slips remembers: nothing, the point solved before, or a march from the "
+                      "start of the "
+                      "study",
+              .unless = "unloaded"});
   visit.where(task.start_where, "start");
   visit.word("direction", task.direction,
              {{"up", Task::Direction::up}, {"down", Task::Direction::down}, {"both", Task::Direction::both}},
              {.says = "of the frequency, with start = \"previous\"", .unless = "up"});
   visit.where(task.direction_where, "direction");
   observe_field(visit, task.observe);
-  visit.quantities("harmonics", task.harmonics, {},
-                   {.says = "orders whose amplitude and phase are kept besides the first"});
-  visit.quantity("tolerance", task.tolerance,
-                 {.unit = "-",
-                  .says = "relative error wanted of the amplitudes; of periodic: residual of the orbit",
-                  .unless = "the route's own"});
+  visit.quantities(
+      "harmonics", task.harmonics, {},
+      {.says =
+           "orders whose amplitude and phase are kept besides the first, up to 1000; harmonic balance reaches to 63"});
+  visit.quantity(
+      "tolerance", task.tolerance,
+      {.unit = "-",
+       .says = "relative error wanted of the amplitudes; of periodic: residual of the orbit; between 0 and 1",
+       .unless = "the route's own"});
   visit.method("method", task.method, {.says = "of time_marching", .unless = "generalized_alpha"});
   visit.quantity("steps_per_period", task.steps_per_period,
-                 {.says = "of time_marching", .unless = "chosen by the error"});
+                 {.says = "of time_marching, at least 4", .unless = "chosen by the error"});
   visit.quantity("max_periods", task.max_periods,
                  {.says = "of time_marching: give up after so many", .unless = "1000"});
   visit.table("waveforms", task.waveforms, {.says = "time histories over a period, and hysteresis loops"});
@@ -223,9 +249,11 @@ void fields(auto& visit, DamperCurveDescription& task) {
                         {.unit = "rad/s", .says = "where peaks are looked for"},
                         {.unit = "Hz", .says = "instead of angular_frequency"});
   excitation_fields(visit, task);
-  visit.word("objective", task.objective, {{"amplitude", Objective::amplitude}, {"dissipated", Objective::dissipated}},
-             {.says = "the largest of the observed amplitudes, to be lowered, or the friction work, to be raised",
-              .unless = "amplitude"});
+  visit.word(
+      "objective", task.objective, {{"amplitude", Objective::amplitude}, {"dissipated", Objective::dissipated}},
+      {.says =
+           "the largest of the observed amplitudes, to be lowered, or the friction work of all sliders, to be raised",
+       .unless = "amplitude"});
   visit.where(task.objective_where, "objective");
   visit.flag("optimum", task.optimum, {.says = "refine the best value and certify it", .unless = "true"});
   observe_field(visit, task.observe);

@@ -36,7 +36,7 @@ void fields(auto& visit, Like<TableDescription> auto& table, const TableUse& use
   visit.columns("table", table, use, {.required = true, .says = use.says});
   std::vector<Choice<Beyond>> choices{{"error", Beyond::error}, {"zero", Beyond::zero}, {"hold", Beyond::hold}};
   if (!use.may_be_zero_beyond) choices.erase(choices.begin() + 1);
-  visit.word("beyond", table.beyond, choices, {.says = "what holds outside the table", .unless = "error"});
+  visit.word("beyond", table.beyond, choices, {.says = "what holds outside the rows of the table", .unless = "error"});
 }
 
 /// The law itself: amplitude, expression or table, with what belongs to each.
