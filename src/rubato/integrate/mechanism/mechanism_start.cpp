@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,30 +25,50 @@ bool factorise_mass(system::MechanismEquations& equations, const system::State& 
   return equations.factorise();
 }
 
-/// @param stands  nothing moves, drives included
-bool balance(system::MechanismEquations& equations, system::State& state, model::Side side, bool stands) {
-  const auto& mechanism = equations.mechanism();
-  Vector force(mechanism.size()), constraint(mechanism.constraint_count());
-  Vector rate(constraint.size()), product(force.size()), explicit_rate(constraint.size()), last;
-  // Friction mu |multiplier| is homogeneous in the multipliers: its slopes at one guess say all, and each round is one
-  // of Newton's method. Without it the first round is the last.
-  constexpr int most_rounds = 30;
-  for (int round = 0; round < most_rounds; ++round) {
-    if (!factorise_mass(equations, state, side, force, constraint, true)) return false;
+/// Acceleration and multipliers of equilibrium as Newton's method sees them. Friction mu |multiplier| is homogeneous in
+/// the multipliers: its slopes at one guess give all of the next, and without it the first correction is the last.
+struct Balancing : numerics::NewtonProblem {
+  Balancing(system::MechanismEquations& equations_, system::State& state_, model::Side side_, bool stands_)
+      : equations(equations_),
+        mechanism(equations_.mechanism()),
+        state(state_),
+        side(side_),
+        stands(stands_),
+        applied(mechanism.size()),
+        force(mechanism.size()),
+        product(mechanism.size()),
+        wanted(mechanism.constraint_count()),
+        rate(wanted.size()),
+        explicit_rate(wanted.size()) {}
+
+  double evaluate(bool /*with_tangent*/) {
+    equations.go_to(state, side);
+    equations.linearise({1.0, 0.0, 0.0, 0.0, true}, state.multiplier, applied, wanted);
+    return 0.0;
+  }
+
+  bool factorise() { return equations.factorise(); }
+
+  double correct() {
     if (stands)
-      rate.setZero();
+      wanted.setZero();
     else
-      equations.second_rate(rate);
-    const Vector applied = force, wanted = rate;
-    force = -force;
-    rate = -rate;
+      equations.second_rate(wanted);
+    force = -applied;
+    rate = -wanted;
     equations.solve(force, rate);
+    return force.norm() + rate.norm();
+  }
+
+  void move(double /*part*/) {
     last = state.multiplier;
     state.acceleration = force;
     state.multiplier = rate;
+  }
+
+  numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
     const bool is_linear = !equations.has_sliding_reactions();
     // The share of the multipliers in the constraint rows: one correction removes it.
-    equations.constraints(constraint);
     mechanism.times_mass(state.acceleration, product);
     force = -(applied + product);
     equations.add_constraint_force(state.multiplier, -1.0, force);
@@ -55,21 +76,92 @@ bool balance(system::MechanismEquations& equations, system::State& state, model:
     equations.constraint_rate(Vector::Zero(force.size()), explicit_rate);
     rate = -(rate - explicit_rate + wanted);
     equations.solve(force, rate);
-    if (!force.allFinite() || !rate.allFinite()) return false;
+    if (!force.allFinite() || !rate.allFinite()) return numerics::NewtonVerdict::stop;
     // What is left of the equations tells the end: of a reaction that turned round the correction is by the old slope,
     // and could lead back. One in every row, as of a share, stays where the slopes no longer change.
     const double size = state.multiplier.norm();
-    if (is_linear || rate.norm() <= 1e-8 * size || (state.multiplier - last).norm() <= 1e-12 * size) {
-      state.acceleration += force;
-      state.multiplier += rate;
-      state.auxiliary_acceleration = state.acceleration;
-      state.contraction = 1.0;
-      state.reaction_lag.resize(0);
-      return true;
-    }
+    const bool is_solved = is_linear || rate.norm() <= 1e-8 * size || (state.multiplier - last).norm() <= 1e-12 * size;
+    if (!is_solved) return numerics::NewtonVerdict::go_on;
+    state.acceleration += force;
+    state.multiplier += rate;
+    return numerics::NewtonVerdict::converged;
   }
-  return false;
+
+  system::MechanismEquations& equations;
+  const system::Mechanism& mechanism;
+  system::State& state;
+  model::Side side;
+  bool stands;  // nothing moves, drives included
+  Vector applied, force, product, wanted, rate, explicit_rate, last;
+};
+
+bool balance(system::MechanismEquations& equations, system::State& state, model::Side side, bool stands) {
+  numerics::NewtonRules rules;
+  rules.most_iterations = 30;
+  Balancing balancing(equations, state, side, stands);
+  if (!numerics::newton(balancing, rules).has_converged()) return false;
+  state.auxiliary_acceleration = state.acceleration;
+  state.contraction = 1.0;
+  state.reaction_lag.resize(0);
+  return true;
 }
+
+/// Positions that satisfy the constraints, along M^-1 G^T, as Newton's method sees them. What it tells of gaps and of
+/// rows that repeat others is of the last configuration whose matrix had factors.
+struct Joining : numerics::NewtonProblem {
+  Joining(system::MechanismEquations& equations_, ConsistentStart& result_, model::Side side_)
+      : equations(equations_),
+        result(result_),
+        state(result_.state),
+        side(side_),
+        force(equations_.mechanism().size()),
+        constraint(equations_.mechanism().constraint_count()),
+        other(state.q),
+        extent(1.0 + state.q.cwiseAbs().maxCoeff()) {}
+
+  double evaluate(bool /*with_tangent*/) {
+    equations.go_to(state, side);
+    equations.linearise({1.0, 0.0, 0.0, 0.0, false}, state.multiplier, force, constraint);
+    gap = 0.0;
+    row = largest_of(constraint, gap);
+    return gap;
+  }
+
+  // Newton's method converges quadratically: a round beyond a small correction leaves round-off.
+  bool is_solved(double) {
+    const bool is_solved = gap <= 1e-15 * extent || (gap <= 1e-12 * extent && gap >= 0.5 * last_gap);
+    last_gap = gap;
+    return is_solved;
+  }
+
+  bool factorise() {
+    if (!equations.factorise()) return false;
+    result.redundant = equations.redundant_rows();
+    result.gap = gap;
+    result.worst_row = row;
+    return true;
+  }
+
+  double correct() {
+    force.setZero();
+    constraint = -constraint;
+    equations.solve(force, constraint);
+    return force.norm();
+  }
+
+  void move(double part) {
+    equations.mechanism().retract(state.q, part * force, other);
+    std::swap(state.q, other);
+  }
+
+  system::MechanismEquations& equations;
+  ConsistentStart& result;
+  system::State& state;
+  model::Side side;
+  Vector force, constraint, other;
+  double extent, gap = 0.0, last_gap = HUGE_VAL;
+  Index row = -1;  // of the largest gap
+};
 
 }  // namespace
 
@@ -113,34 +205,24 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   if (state.multiplier.size() != c)
     state.multiplier = Vector::Zero(c);  // else: where friction that follows them begins
   const Vector first = state.q, first_velocity = state.v;
-  Vector force(n), constraint(c), moved(n), product(n), other = state.q;
 
-  // Newton's method converges quadratically: a round beyond a small correction leaves round-off.
-  constexpr int most_iterations = 50;
-  const double extent = 1.0 + state.q.cwiseAbs().maxCoeff();
-  double last_gap = HUGE_VAL;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    if (!factorise_mass(equations, state, side, force, constraint)) return result;
-    result.redundant = equations.redundant_rows();
-    double gap = 0.0;
-    result.worst_row = largest_of(constraint, gap);
-    result.gap = gap;
-    if (!std::isfinite(gap)) return result;
-    if (gap <= 1e-15 * extent || (gap <= 1e-12 * extent && gap >= 0.5 * last_gap)) break;
-    last_gap = gap;
-    force.setZero();
-    constraint = -constraint;
-    equations.solve(force, constraint);
-    mechanism.retract(state.q, force, other);
-    std::swap(state.q, other);
-  }
+  numerics::NewtonRules rules;
+  rules.most_iterations = 50;
+  Joining joining(equations, result, side);
+  const double extent = joining.extent;
+  const numerics::NewtonOutcome outcome = numerics::newton(joining, rules).outcome;
+  if (outcome == numerics::NewtonOutcome::limit)
+    joining.evaluate(true);
+  else if (outcome != numerics::NewtonOutcome::converged)
+    return result;
+  if (!joining.factorise()) return result;
   if (!(result.gap <= 1e-10 * extent)) return result;
   result.is_assembled = true;
+  Vector force(n), constraint(c), moved(n), product(n);
   mechanism.difference(first, state.q, moved);
   result.most_moved = largest_of(moved, result.position_moved);
   if (result.position_moved <= 1e-12 * extent) result.most_moved = -1;
 
-  if (!factorise_mass(equations, state, side, force, constraint)) return result;
   mechanism.times_mass(state.v, product);
   const double before = 0.5 * state.v.dot(product);
   Vector impulse = Vector::Zero(c), rate(c), mean_rate(c), rate_of_time(c);
