@@ -1,5 +1,6 @@
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
 #include <rubato/integrate/mechanism/met_locks.hpp>
+#include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -36,62 +37,27 @@ class Search {
   /// Downhill from a configuration that may be far away.
   MechanismEquilibrium downhill() {
     scale_ = stiffness_per_mass();
-    double shift = first_shift * scale_, last = HUGE_VAL;
-    const int most =
+    numerics::NewtonRules rules;
+    rules.most_iterations =
         static_cast<int>(plan_.most_iterations / (locks_.any_open(found_.state) ? shorter_with_locks : 1.0));
-    for (found_.iterations = 0; found_.iterations < most; ++found_.iterations) {
-      if (!factorise(shift)) {
-        if (!std::isfinite(found_.residual) || !(shift < most_shift * scale_)) return found_;
-        shift *= 10.0;  // a pivot that vanishes does so with one shift
-        continue;
-      }
-      const double norm = force_norm();
-      const bool climbs = !equations_.is_positive() && shift < most_shift * scale_;
-      const Correction correction = correct();
-      if (!std::isfinite(correction.size)) return found_;
-      if (climbs) {
-        // Newton's method would climb, and a larger shift leads downhill; unless nothing is left to go.
-        if (is_small(correction) && stands() && settles()) return found_;
-        shift *= 10.0;
-        continue;
-      }
-      bool has_changed = advance(correction);
-      if (!has_changed && is_small(correction) && shift <= settled * scale_) {
-        found_.is_found = true;
-        if (settles()) {
-          found_.is_stable = factorise(least_shift * scale_) && equations_.is_positive();
-          return found_;
-        }
-        has_changed = true;
-      }
-      if (has_changed) {
-        shift = std::max(shift, first_shift * scale_);
-        last = HUGE_VAL;
-        continue;
-      }
-      // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
-      const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
-      shift = std::max(least_shift * scale_, shift * (correction.share == 1.0 ? std::min(fall, 0.5) : 1.0));
-      last = norm;
-    }
+    Downhill way(*this, rules.most_iterations);
+    numerics::newton(way, rules);
     return found_;
   }
 
-  /// Newton's method alone, under a share of the loads: quick near an equilibrium, stable or not.
+  /// Newton's method alone, under a share of the loads: quick near an equilibrium, stable or not. It begins anew where
+  /// locks change, and the equations with them.
   /// @param load  [-]
   MechanismEquilibrium near(double load) {
-    constexpr int enough = 30;  // it converges in ten, or not at all
+    numerics::NewtonRules rules;
+    rules.most_iterations = 30;  // it converges in ten, or not at all
     scale_ = stiffness_per_mass();
-    for (found_.iterations = 0; found_.iterations < enough * (1 + locks_.changes()); ++found_.iterations) {
-      if (!factorise(0.0, load)) return found_;
-      const Correction correction = correct();
-      if (!std::isfinite(correction.size)) return found_;
-      if (advance(correction) || !is_small(correction)) continue;
-      found_.is_found = true;
-      if (!settles()) continue;
-      found_.is_stable = factorise(least_shift * scale_, load) && equations_.is_positive();
-      return found_;
-    }
+    numerics::NewtonReport report;
+    do {
+      Near way(*this, load);
+      report = numerics::newton(way, rules);
+      found_.iterations += report.iterations;
+    } while (report.outcome == numerics::NewtonOutcome::stopped);
     return found_;
   }
 
@@ -101,15 +67,107 @@ class Search {
     double share, size;
   };
 
-  /// The residual and the factors of  K + shift M  under a share of the loads; false where they are no numbers.
-  bool factorise(double shift, double load = 1.0) {
+  /// Equilibrium under a share of the loads, as Newton's method sees it. Stops where locks change.
+  struct Near : numerics::NewtonProblem {
+    Near(Search& of, double load_) : s(of), load(load_), changes(of.locks_.changes()) {}
+
+    double evaluate(bool /*with_tangent*/) { return s.linearise(0.0, load); }
+    bool factorise() { return s.equations_.factorise(); }
+    double correct() {
+      correction = s.correct();
+      return correction.size;
+    }
+    double longest_part() { return correction.share; }
+    void move(double part) { (void)s.advance(part); }
+
+    numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
+      if (s.locks_.changes() != changes) return numerics::NewtonVerdict::stop;
+      if (!s.is_small(correction)) return numerics::NewtonVerdict::go_on;
+      if (!s.settles()) return numerics::NewtonVerdict::stop;
+      s.found_.is_stable = s.factorise(least_shift * s.scale_, load) && s.equations_.is_positive();
+      return numerics::NewtonVerdict::converged;
+    }
+
+    Search& s;
+    double load;
+    int changes;
+    Correction correction{};
+  };
+
+  /// The same under all loads with K + shift M, as Newton's method sees it. Each evaluation raises the shift until the
+  /// correction leads downhill.
+  struct Downhill : numerics::NewtonProblem {
+    Downhill(Search& of, int most_) : s(of), most(most_), shift(first_shift * of.scale_) {}
+
+    double evaluate(bool /*with_tangent*/) {
+      leads_downhill = false;
+      for (; s.found_.iterations < most; ++s.found_.iterations) {
+        if (!s.factorise(shift)) {
+          if (!std::isfinite(s.found_.residual) || !(shift < most_shift * s.scale_)) break;
+          shift *= 10.0;  // a pivot that vanishes does so with one shift
+          continue;
+        }
+        norm = s.force_norm();
+        const bool climbs = !s.equations_.is_positive() && shift < most_shift * s.scale_;
+        correction = s.correct();
+        leads_downhill = !climbs;
+        if (leads_downhill || !std::isfinite(correction.size)) break;
+        // Newton's method would climb, and a larger shift leads downhill; unless nothing is left to go.
+        has_nothing_left = s.is_small(correction) && s.stands() && s.settles();
+        if (has_nothing_left) break;
+        shift *= 10.0;
+      }
+      return s.found_.residual;
+    }
+
+    bool is_solved(double) { return has_nothing_left; }
+    bool factorise() { return leads_downhill; }
+    double correct() { return correction.size; }
+    double longest_part() { return correction.share; }
+    void move(double part) { has_changed = s.advance(part); }
+
+    numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
+      if (!has_changed && s.is_small(correction) && shift <= settled * s.scale_) {
+        if (s.settles()) {
+          s.found_.is_stable = s.factorise(least_shift * s.scale_) && s.equations_.is_positive();
+          return numerics::NewtonVerdict::converged;
+        }
+        has_changed = true;
+      }
+      ++s.found_.iterations;
+      if (has_changed) {
+        shift = std::max(shift, first_shift * s.scale_);
+        last = HUGE_VAL;
+        return numerics::NewtonVerdict::go_on;
+      }
+      // The shift falls as the residual does, and faster near the end; where the residual grows it stays.
+      const double fall = std::isfinite(last) ? std::clamp(norm / last, 0.05, 1.0) : 1.0;
+      shift = std::max(least_shift * s.scale_, shift * (correction.share == 1.0 ? std::min(fall, 0.5) : 1.0));
+      last = norm;
+      return numerics::NewtonVerdict::go_on;
+    }
+
+    Search& s;
+    int most;
+    double shift, norm = 0.0, last = HUGE_VAL;
+    bool leads_downhill = false, has_nothing_left = false, has_changed = false;
+    Correction correction{};
+  };
+
+  /// The residual under a share of the loads, and the matrix  K + shift M. Returns the largest force that is left.
+  double linearise(double shift, double load = 1.0) {
     const system::MechanismEquations::Weights weights{shift, 0.0, 1.0, scale_};
     equations_.go_to(found_.state, model::Side::right);
     equations_.linearise(weights, found_.state.multiplier, force_, constraint_);
     if (load != 1.0) equations_.scale_loads(load, weights, force_);
     equations_.add_constraint_force(found_.state.multiplier, 1.0, force_);
     found_.residual = force_.size() > 0 ? force_.cwiseAbs().maxCoeff(&found_.worst) : 0.0;
-    return std::isfinite(found_.residual) && equations_.factorise();
+    return found_.residual;
+  }
+
+  /// False where there are no numbers, or no factors.
+  bool factorise(double shift, double load = 1.0) {
+    return std::isfinite(linearise(shift, load)) && equations_.factorise();
   }
 
   Correction correct() {
@@ -120,10 +178,9 @@ class Search {
     return {longest_share(), std::sqrt(std::max(force_.dot(product_), 0.0))};
   }
 
-  /// Returns whether that meets a lock.
-  bool advance(const Correction& correction) {
+  /// Takes a share of the correction, up to the first lock. Returns whether that meets a lock.
+  bool advance(double share) {
     system::State& state = found_.state;
-    double share = correction.share;
     mechanism_.retract(state.q, share * force_, next_);
     if (locks_.passes(state, next_, extent_)) {
       // Up to the first lock: what lies behind it is not on the way.
@@ -157,7 +214,7 @@ class Search {
     if (!factorise(least_shift * scale_)) return false;
     const bool is_stable = equations_.is_positive();
     const Correction correction = correct();
-    if (!is_small(correction) || advance(correction)) return false;
+    if (!is_small(correction) || advance(correction.share)) return false;
     found_.is_found = true;
     found_.is_stable = is_stable;
     return true;
