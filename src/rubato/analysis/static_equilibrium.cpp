@@ -1,4 +1,5 @@
 #include <rubato/analysis/static_equilibrium.hpp>
+#include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
@@ -76,38 +77,78 @@ class StaticSolver {
   }
 
   StaticEquilibrium solve() {
-    // Sliders begin stuck, stops as they are without displacement.
-    std::vector<char> set = contacts_.holding(result_.state.q);
-    std::fill_n(set.begin(), system_.sliders().size(), 1);
+    Settling settling(*this);
+    numerics::NewtonRules rules;
     // Each contact changes its state a few times at most; the energy falls with every step.
-    const int most = 20 + 10 * static_cast<int>(set.size());
-    for (int iteration = 0; iteration < most; ++iteration) {
-      if (!factorise(set, 0.0)) {
-        // What only open stops could hold drifts to the first of them.
-        const Index met = has_open_stop(set) && factorise(set, drift) ? drift_to_stop(set) : -1;
-        if (met < 0) return no_equilibrium(set);
-        set[static_cast<std::size_t>(met)] = 1;
-        continue;
-      }
-      const bool has_settled = step();
-      std::vector<char> next = contacts_.holding(result_.state.q);
-      if (has_settled && next == set) {
-        for (int refinement = 0; refinement < 2; ++refinement) step();
+    rules.most_iterations = 20 + 10 * static_cast<int>(settling.set.size());
+    switch (numerics::newton(settling, rules).outcome) {
+      case numerics::NewtonOutcome::converged:
+        for (int refinement = 0; refinement < 2; ++refinement) {
+          settling.correct();
+          settling.move(settling.longest_part());
+        }
         finish();
         return std::move(result_);
-      }
-      set = std::move(next);
+      case numerics::NewtonOutcome::singular:
+        return no_equilibrium(settling.set);
+      default:
+        result_.outcome = StaticOutcome::not_settled;
+        return std::move(result_);
     }
-    result_.outcome = StaticOutcome::not_settled;
-    return std::move(result_);
   }
 
  private:
+  /// The equilibrium as Newton's method sees it: the tangent is that of a set of contacts that hold, and has converged
+  /// where a whole step changes no contact.
+  struct Settling : numerics::NewtonProblem {
+    // Sliders begin stuck, stops as they are without displacement.
+    explicit Settling(StaticSolver& of) : s(of), q(of.result_.state.q), set(of.contacts_.holding(q)) {
+      std::fill_n(set.begin(), s.system_.sliders().size(), 1);
+    }
+
+    double evaluate(bool /*with_tangent*/) { return 0.0; }
+
+    bool factorise() {
+      while (!s.factorise(set, 0.0)) {
+        // What only open stops could hold drifts to the first of them.
+        const Index met = s.has_open_stop(set) && s.factorise(set, drift) ? s.drift_to_stop(set) : -1;
+        if (met < 0) return false;
+        set[static_cast<std::size_t>(met)] = 1;
+      }
+      return true;
+    }
+
+    double correct() {
+      change = s.change_of(s.unbalanced(q));
+      changes = s.changes_along(q, change);
+      return change.allFinite() ? change.cwiseAbs().maxCoeff() : HUGE_VAL;
+    }
+
+    // Newton's step is shortened to where the energy is least along it.
+    double longest_part() { return changes.empty() ? 1.0 : s.least_energy_along(q, change, changes); }
+
+    void move(double part) { q += part * change; }
+
+    numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
+      std::vector<char> next = s.contacts_.holding(q);
+      const bool has_settled = changes.empty() && next == set;
+      set = std::move(next);
+      return has_settled ? numerics::NewtonVerdict::converged : numerics::NewtonVerdict::go_on;
+    }
+
+    StaticSolver& s;
+    Vector& q;
+    std::vector<char> set;  // sliders that stick and stops that are closed
+    Vector change;
+    std::vector<double> changes;  // parts of it at which contacts change their states
+  };
+
   bool has_open_stop(const std::vector<char>& set) const {
     return std::find(set.begin() + system_.slider_count(), set.end(), 0) != set.end();
   }
 
   Vector change_of(const Vector& residual) const {
+    if (free_.empty()) return Vector::Zero(system_.size());
     Vector right(static_cast<Index>(free_.size()));
     for (std::size_t i = 0; i < free_.size(); ++i) right[static_cast<Index>(i)] = residual[free_[i]];
     Vector solution;
@@ -222,19 +263,6 @@ class StaticSolver {
     const Vector share = scale_of(diagonal).cwiseSqrt().cwiseProduct(motion.cwiseAbs());
     for (Index i = 0; i < share.size(); ++i)
       if (!(share[i] <= 1e-3 * share.maxCoeff())) result_.moving.push_back(free_[static_cast<std::size_t>(i)]);
-  }
-
-  /// Newton's step for the set of the factor, shortened to where the energy is least along it. Says whether the whole
-  /// step was taken and no contact changed its state on the way: then q is the equilibrium of the set.
-  bool step() {
-    Vector& q = result_.state.q;
-    const Vector residual = unbalanced(q);
-    if (free_.empty()) return true;
-    const Vector change = change_of(residual);
-    const std::vector<double> changes = changes_along(q, change);
-    const double length = changes.empty() ? 1.0 : least_energy_along(q, change, changes);
-    q += length * change;
-    return changes.empty();
   }
 
   /// Where between 0 and 1 contacts change their states on the way along `change`, rising.
