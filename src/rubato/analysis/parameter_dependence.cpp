@@ -32,7 +32,9 @@ ParameterDependence::ParameterDependence(const model::StudyDescription& study, c
 std::vector<std::size_t> ParameterDependence::used(const model::Quantity& quantity, bool of_time) const {
   if (quantity.expression.empty()) return {};
   try {
-    return numerics::parameters_used(quantity.expression, values_, of_time);
+    // Formulas of laws may use what they see, beside t.
+    return numerics::parameters_used(quantity.expression, values_, of_time,
+                                     of_time ? std::vector<std::string>{"u", "rate"} : std::vector<std::string>{});
   } catch (const InvalidInput& fault) {
     throw InvalidInput(quantity.where, fault.message());
   }

@@ -17,9 +17,11 @@ void ContactProblem::reset(const Matrix& compliance, const std::vector<model::Sl
 }
 
 void ContactProblem::reset(const Matrix& compliance, const Matrix& velocity_compliance,
-                           const std::vector<model::Slider>& sliders, const std::vector<model::Stop>& stops) {
+                           const std::vector<model::Slider>& sliders, const std::vector<model::Stop>& stops,
+                           Index laws) {
   sliders_ = static_cast<Index>(sliders.size());
-  m_ = sliders_ + static_cast<Index>(stops.size());
+  boxes_ = sliders_ + static_cast<Index>(stops.size());
+  m_ = boxes_ + laws;
   scaled_compliance_ = compliance;
   limit_.setZero(m_);
   for (Index i = 0; i < sliders_; ++i) {
@@ -27,8 +29,9 @@ void ContactProblem::reset(const Matrix& compliance, const Matrix& velocity_comp
     limit_[i] = sliders[static_cast<std::size_t>(i)].limit;
   }
   touching_scale_.setOnes(m_);
-  if (!stops.empty()) compliance_ = compliance;
-  for (Index i = sliders_; i < m_; ++i) {
+  if (m_ > sliders_) compliance_ = compliance;
+  if (laws > 0) velocity_compliance_ = velocity_compliance;
+  for (Index i = sliders_; i < boxes_; ++i) {
     const auto& stop = stops[static_cast<std::size_t>(i - sliders_)];
     scaled_compliance_.row(i) = stop.stiffness * compliance.row(i) + stop.damping * velocity_compliance.row(i);
     if (compliance(i, i) > 0.0) touching_scale_[i] = 1.0 / compliance(i, i);
@@ -43,6 +46,11 @@ void ContactProblem::reset(const Matrix& compliance, const Matrix& velocity_comp
   tangent_.resize(m_, m_);
   right_.resize(m_);
   row_swaps_.resize(m_);
+}
+
+void ContactProblem::set_slopes(Index contact, double k, double c) {
+  scaled_compliance_.row(contact) = k * compliance_.row(contact) + c * velocity_compliance_.row(contact);
+  factored_set_[0] = 3;  // no such state: forces a factorisation
 }
 
 // Each slider in one of three states: at most nine sets, visited by the same iteration as many sliders.
@@ -114,6 +122,7 @@ int ContactProblem::stop_state(Index i, double rest, double size, const double* 
 }
 
 int ContactProblem::state_of(Index i, const double* trial, const double* force, const double* penetration) const {
+  if (i >= boxes_) return 0;
   const double limit = limit_[i];
   double rest = trial[i], size = limit + std::abs(trial[i]);
   for (Index j = 0; j < m_; ++j) {
@@ -160,7 +169,8 @@ void ContactProblem::force_of_the_set(const double* trial, double* force, const 
 }
 
 bool ContactProblem::solve_many(const double* trial, const double* previous, double* force, const double* penetration) {
-  for (Index i = sliders_; i < m_; ++i)
+  for (Index i = boxes_; i < m_; ++i) set_[static_cast<std::size_t>(i)] = 0;
+  for (Index i = sliders_; i < boxes_; ++i)
     set_[static_cast<std::size_t>(i)] = previous[i] > 0.0 || (trial[i] > 0.0 && penetration[i] > 0.0) ? 0 : 1;
   for (Index i = 0; i < sliders_; ++i) {
     const bool at_limit = std::abs(previous[i]) >= limit_[i];
@@ -182,7 +192,7 @@ bool ContactProblem::solve_many(const double* trial, const double* previous, dou
     }
     if (is_consistent) {
       for (Index i = 0; i < sliders_; ++i) force[i] = std::clamp(force[i], -limit_[i], limit_[i]);
-      for (Index i = sliders_; i < m_; ++i) force[i] = std::max(force[i], 0.0);
+      for (Index i = sliders_; i < boxes_; ++i) force[i] = std::max(force[i], 0.0);
       return true;
     }
     if (!one_at_a_time) std::swap(set_, next_);

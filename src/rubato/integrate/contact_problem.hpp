@@ -11,7 +11,8 @@
 
 namespace rubato::integrate {
 
-/// The forces of all contacts, sliders and then stops, at the end of a step, from what the step gives them without.
+/// The forces of all contacts, sliders, stops and then laws in a linear form, at the end of a step, from what the step
+/// gives them without.
 ///
 /// The displacement of the contacts depends on their forces by u = u_free - W fc with the contact compliance W [m x m]
 /// [m/N], and their velocity by du/dt = v_free - W' fc. The return map of a slider is fc = clamp(fc0 + kT (u - u0), -L,
@@ -21,7 +22,8 @@ namespace rubato::integrate {
 ///   stops    fs = max(0, trial - Q fc),         trial = k (u_free - gap) + c v_free,   Q = k W + c W'
 ///
 /// in their rows. A damped stop that its own damping would throw back over the gap within the step touches: the gap is
-/// closed, u = gap, by a force between zero and trial - Q fc.
+/// closed, u = gap, by a force between zero and trial - Q fc. A law whose force is linear in u and du/dt is a row that
+/// always has its equation.
 ///
 /// With W symmetric and positive semi-definite the solution is unique (a box-constrained linear complementarity problem
 /// with a P-matrix). The set of sticking sliders is found by a semismooth Newton iteration (exact at a finite set: its
@@ -31,8 +33,12 @@ class ContactProblem {
  public:
   /// @param compliance           W [m x m] [m/N]
   /// @param velocity_compliance  W' [m x m] [m/(N s)]; read only where there are stops
+  /// @param laws                 rows behind them, whose slopes set_slopes() gives
   void reset(const Matrix& compliance, const Matrix& velocity_compliance, const std::vector<model::Slider>& sliders,
-             const std::vector<model::Stop>& stops);
+             const std::vector<model::Stop>& stops, Index laws = 0);
+  /// The row of a law: fc = trial - Q fc with Q = k W + c W', trial = f + k (u_free - u) + c (v_free - v) about the
+  /// point of which f, k and c are the force and its slopes.
+  void set_slopes(Index contact, double k, double c);
   /// Sliders alone.
   void reset(const Matrix& compliance, const std::vector<model::Slider>& sliders);
 
@@ -56,11 +62,12 @@ class ContactProblem {
   int state_of(Index i, const double* trial, const double* force, const double* penetration) const;
   int stop_state(Index i, double rest, double size, const double* force, const double* penetration) const;
 
-  Index m_ = 0, sliders_ = 0;  // contacts, and how many of them are sliders
-  Matrix compliance_;          // W, kept for stops
-  Vector touching_scale_;      // turns metres into newtons in the rows of touching stops
-  Matrix scaled_compliance_;   // Q
-  Vector limit_;               // of stops zero: open is their state at it
+  Index m_ = 0, sliders_ = 0, boxes_ = 0;  // contacts; of them sliders, and those before the laws
+  Matrix compliance_;                      // W, kept for stops and laws
+  Matrix velocity_compliance_;             // W', kept for laws
+  Vector touching_scale_;                  // turns metres into newtons in the rows of touching stops
+  Matrix scaled_compliance_;               // Q
+  Vector limit_;                           // of stops zero: open is their state at it
   double q_[2][2] = {{0, 0}, {0, 0}};
   double l_[2] = {0, 0};
   std::vector<int> set_, next_, factored_set_;
@@ -73,6 +80,7 @@ class ContactProblem {
 inline bool ContactProblem::solve(const double* trial, const double* previous, double* force,
                                   const double* penetration) {
   if (m_ == 0) return true;
+  if (m_ > boxes_) return solve_many(trial, previous, force, penetration);
   if (m_ > sliders_)
     return m_ == 1 ? solve_stop(trial, force, penetration) : solve_many(trial, previous, force, penetration);
   if (m_ == 1) {

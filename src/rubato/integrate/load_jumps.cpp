@@ -30,7 +30,13 @@ std::vector<double> jumps_of(const system::Loads& loads, double from, double to)
 }
 
 LoadJumps::LoadJumps(const system::LocallyNonlinear& system, double from, double to)
-    : times_(jumps_of(system.loads(), from, to)), equilibrium_(system), left_(system.size()), right_(system.size()) {}
+    : times_(jumps_of(system.loads(), from, to)),
+      system_(system),
+      equilibrium_(system),
+      left_(system.size()),
+      right_(system.size()) {
+  system.add_law_breakpoints(from, to, times_);
+}
 
 double LoadJumps::end_of_step(double t1, double round_off) const {
   double end = t1;
@@ -47,6 +53,7 @@ void LoadJumps::pass(system::State& state, double since) {
   state.t = next();  // switches of two formulas may be apart by round-off
   equilibrium_(state, left_, model::Side::left);
   state.t = now;
+  system_.set_law_forces(state, model::Side::right);
   equilibrium_(state, right_, model::Side::right);
   state.auxiliary_acceleration += right_ - left_;
   while (next() <= now) ++next_;

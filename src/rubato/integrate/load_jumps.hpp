@@ -38,6 +38,7 @@ class LoadJumps {
   std::size_t next_ = 0;
   long missed_ = 0;
   double first_missed_ = HUGE_VAL;
+  const system::LocallyNonlinear& system_;
   system::EquilibriumAcceleration equilibrium_;
   Vector left_, right_;
 };

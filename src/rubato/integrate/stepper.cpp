@@ -21,6 +21,8 @@ std::unique_ptr<Stepper> make_stepper(const Method& method, const system::Locall
 system::State consistent_start(const system::LocallyNonlinear& system, system::State given) {
   system::EquilibriumAcceleration acceleration(system);
   system.set_stop_forces(given);
+  if (given.memory.size() == 0) given.memory = Vector::Zero(system.memory_size());
+  system.set_law_forces(given, model::Side::right);
   given.auxiliary_acceleration.resize(system.size());
   acceleration(given, given.auxiliary_acceleration);
   return given;

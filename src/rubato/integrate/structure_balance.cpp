@@ -41,6 +41,7 @@ void StructureBalance::find_contact_forces(const system::State& before, system::
     state.slider_force[i] = std::clamp(before.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
   }
   system_.set_stop_forces(state);
+  system_.move_laws(before, state);
 }
 
 }  // namespace rubato::integrate

@@ -55,16 +55,22 @@ StructureTimeline::StructureTimeline(const system::LocallyNonlinear& system, dou
       equilibrium_(system) {}
 
 std::vector<double> StructureTimeline::breakpoints(double from, double to) const {
-  return loads_.breakpoints(from, to);
+  std::vector<double> times = loads_.breakpoints(from, to);
+  system_.add_law_breakpoints(from, to, times);
+  return times;
 }
 
 bool StructureTimeline::jumps_at(double t) {
+  std::vector<double> of_laws;
+  system_.add_law_breakpoints(t - resolution_, t + resolution_, of_laws);
+  if (!of_laws.empty()) return true;
   loads_.evaluate(t, left_, model::Side::left);
   loads_.evaluate(t, right_, model::Side::right);
   return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm()));
 }
 
 bool StructureTimeline::restart(system::State& state) {
+  system_.set_law_forces(state, model::Side::right);
   equilibrium_(state, state.auxiliary_acceleration);
   return true;
 }
@@ -80,7 +86,7 @@ bool StructureTimeline::has_ended_at(Index contact, const system::State& from, c
 Passage StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
   bool has_kink = false, has_jump = false;
   beyond_.slider_force = state.slider_force;
-  for (Index i = 0; i < system_.contact_count(); ++i) {
+  for (Index i = 0; i < system_.first_law(); ++i) {
     const Watch watch = watch_of(i, before);
     if (watch == Watch::nothing || watch == Watch::rest_after_positive || watch == Watch::rest_after_negative) continue;
     if (!has_ended_at(i, before, state)) continue;
@@ -222,7 +228,7 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
 Crossing StructureTimeline::first_crossing(const system::State& from, const system::State& to, double least, Look) {
   Crossing first;
   first.share = HUGE_VAL;
-  for (Index i = 0; i < system_.contact_count(); ++i) {
+  for (Index i = 0; i < system_.first_law(); ++i) {
     if (!(guard(i, from, to).value < 0.0)) continue;
     const double share = share_of(i, from, to);
     if (share >= least && share < first.share) first = {i, share};

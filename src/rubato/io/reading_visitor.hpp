@@ -51,8 +51,8 @@ class ReadingVisitor {
     place = reader_.where("name");
     title(kind, to);
   }
-  void between(const char* key, model::Between& to, std::array<Location, 2>& places, const Key&) {
-    to = reader_.between(key, places);
+  void between(const char* key, model::Between& to, std::array<Location, 2>& places, const Key& about) {
+    if (about.required || reader_.has(key)) to = reader_.between(key, places);
   }
   void names(const char* key, std::vector<std::string>& to, std::vector<Location>* places, const Words&,
              const Key& about);
@@ -153,6 +153,16 @@ class ReadingVisitor {
     for (TomlReader& reader : reader_.tables(key)) {
       Description description;
       ReadingVisitor(reader, folder_, to.size() + 1).read(description);
+      to.push_back(std::move(description));
+    }
+  }
+  /// Tables that share a list with others: each begins as a description that says which it is.
+  template <class Description>
+  void tables_like(const char* key, std::vector<Description>& to, const Description& prototype, const char*) {
+    std::size_t number = 0;
+    for (TomlReader& reader : reader_.tables(key)) {
+      Description description = prototype;
+      ReadingVisitor(reader, folder_, ++number).read(description);
       to.push_back(std::move(description));
     }
   }

@@ -140,6 +140,12 @@ class SchemaVisitor {
   void tables(const char* key, const std::vector<Description>&, const char* says) {
     property(key, list(of<Description>().schema(), {0}), {.says = says});
   }
+  template <class Description>
+  void tables_like(const char* key, const std::vector<Description>&, Description prototype, const char* says) {
+    SchemaVisitor one;
+    fields(one, prototype);
+    property(key, list(one.schema(), {0}), {.says = says});
+  }
   template <class Moving>
   void held_or_moving(const char* key, const char*, const std::vector<model::HeldDescription>&, model::Held what,
                       const std::vector<Moving>&, const char* says) {

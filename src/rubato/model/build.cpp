@@ -32,6 +32,7 @@ class Builder {
     take_damping();
     take_sliders();
     take_stops();
+    take_laws();
     for (const ForceDescription& force : description_.forces) {
       if (force.follows)
         throw InvalidInput(force.follows_where, fmt::format("the force on \"{}\" follows its node, which takes a "
@@ -308,6 +309,31 @@ class Builder {
     }
   }
 
+  void take_laws() {
+    for (const LawDescription& description : description_.laws) {
+      const LawKind& kind = law_kind(description.kind);
+      const std::string part = fmt::format("{} \"{}\"", description.kind, description.name);
+      if (description.name.empty()) throw InvalidInput(description.where, fmt::format("{} needs a name", kind.title));
+      refuse_unfit_name(description.name, description.where);
+      const auto is_called_so = [&](const auto& other) { return other.name == description.name; };
+      if (std::any_of(model_.laws.begin(), model_.laws.end(), is_called_so))
+        throw InvalidInput(description.where, fmt::format("two laws are called \"{}\"", description.name));
+      if (std::any_of(model_.sliders.begin(), model_.sliders.end(), is_called_so) ||
+          std::any_of(model_.stops.begin(), model_.stops.end(), is_called_so) || places_.count(description.name) > 0)
+        throw InvalidInput(
+            description.where,
+            fmt::format("{} has the name of a slider, a stop or a coordinate; results would mix them up", part));
+      if (!description.joint.empty())
+        throw InvalidInput(description.joint_where,
+                           fmt::format("{} acts on the joint \"{}\", but the model has no [[joint]]; join two "
+                                       "coordinates, with between = [\"NAME\", \"ground\"]",
+                                       part, description.joint));
+      LawBetween law{description.name, description.kind, ground, ground, kind.make(description, parameters_, part)};
+      join(description.between, description.between_where, part, law.first, law.second);
+      model_.laws.push_back(std::move(law));
+    }
+  }
+
   void take_distributed_force(const DistributedForceDescription& description) {
     const std::string part = fmt::format("the distributed force on \"{}\"", description.on);
     const auto is_meant = [&](const NamedLine& line) { return line.name == description.on; };
@@ -379,6 +405,7 @@ class Builder {
       };
       for (const Slider& slider : model_.sliders) refuse_contact(slider);
       for (const Stop& stop : model_.stops) refuse_contact(stop);
+      for (const LawBetween& law : model_.laws) refuse_contact(law);
       model_.prescribed.push_back(build_prescribed(motion, place, parameters_));
     }
     if (static_cast<Index>(model_.prescribed.size()) == model_.size())

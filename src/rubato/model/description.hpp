@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/laws/law_kind.hpp>
 #include <rubato/model/mechanism_description.hpp>
 #include <rubato/model/quantity.hpp>
 #include <rubato/model/structure_description.hpp>
@@ -166,6 +167,7 @@ struct ModelDescription {
   DampingDescription damping;
   std::vector<SliderDescription> sliders;
   std::vector<StopDescription> stops;
+  std::vector<LawDescription> laws;
   std::vector<ForceDescription> forces;
   std::vector<DistributedForceDescription> distributed_forces;
   std::vector<HeldDescription> held_forces, displacements;

@@ -2,10 +2,12 @@
 
 #include <rubato/core/types.hpp>
 #include <rubato/model/description.hpp>
+#include <rubato/model/laws/law.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
 #include <rubato/numerics/formula.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -41,6 +43,14 @@ struct Stop {
     const double pushed = stiffness * (u - gap) + damping * rate;
     return u > gap && pushed > 0.0 ? pushed : 0.0;
   }
+};
+
+/// A law on u = x_first - x_second; -force acts on first, +force on second.
+struct LawBetween {
+  std::string name;
+  std::string kind;  ///< its table in the study file
+  Index first = ground, second = ground;
+  std::shared_ptr<const Law> law;
 };
 
 struct Force {
@@ -101,6 +111,7 @@ struct Model {
   Damping damping;                       ///< in addition to dashpots
   std::vector<Slider> sliders;
   std::vector<Stop> stops;
+  std::vector<LawBetween> laws;
   std::vector<Force> forces;
   std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;

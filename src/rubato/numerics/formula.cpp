@@ -312,12 +312,14 @@ bool is_formula_of(const Parameters& parameters, const std::string& text) {
   }
 }
 
-std::vector<std::size_t> parameters_used(const std::string& text, const Parameters& parameters, bool of_time) {
+std::vector<std::size_t> parameters_used(const std::string& text, const Parameters& parameters, bool of_time,
+                                         const std::vector<std::string>& others) {
   std::vector<std::string> names;
   for (const auto& parameter : parameters) names.push_back(parameter.first);
+  names.insert(names.end(), others.begin(), others.end());
   const Formula formula(text, {}, of_time, names);
   std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < names.size(); ++i)
+  for (std::size_t i = 0; i < parameters.size(); ++i)
     if (formula.uses(i)) places.push_back(i);
   return places;
 }

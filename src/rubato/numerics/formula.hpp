@@ -76,7 +76,9 @@ class Formula {
 bool is_formula_of(const Parameters& parameters, const std::string& text);
 
 /// Which of the parameters a formula uses (by place, rising). Throws InvalidInput as Formula does.
-std::vector<std::size_t> parameters_used(const std::string& text, const Parameters& parameters, bool of_time = false);
+/// @param others  names of further values that it may use, which the parameters of the same name go before
+std::vector<std::size_t> parameters_used(const std::string& text, const Parameters& parameters, bool of_time = false,
+                                         const std::vector<std::string>& others = {});
 
 /// Adds to sorted times those that do not coincide with one of them or with an end, to the round-off to which formulas
 /// know their switches.

@@ -244,6 +244,7 @@ AssembledModel assemble_with_loads(const model::Model& model) {
     parts.damping = SparseMatrix(parts.damping + model.matrices->damping);
   parts.sliders = model.sliders;
   parts.stops = model.stops;
+  parts.laws = model.laws;
   std::vector<ModelLoad> loads = loads_of(model, parts.mass);
   parts.start.q = model.position;
   parts.start.v = model.velocity;

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/numerics/formula.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -24,9 +25,18 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
   if (start.v.size() == 0) start.v = Vector::Zero(n);
   for (const auto& slider : parts_.sliders) contacts_.push_back({slider.first, slider.second});
   for (const auto& stop : parts_.stops) contacts_.push_back({stop.first, stop.second});
+  for (const auto& law : parts_.laws) {
+    contacts_.push_back({law.first, law.second});
+    memory_start_.push_back(memory_size_);
+    memory_size_ += law.law->memory_size();
+    has_laws_of_time_ = has_laws_of_time_ || law.law->depends_on_time();
+  }
+  if (start.memory.size() == 0) start.memory = Vector::Zero(memory_size_);
+  assert(start.memory.size() == memory_size_);
   if (start.slider_force.size() == 0) start.slider_force = Vector::Zero(contact_count());
   assert(start.slider_force.size() == contact_count());
   set_stop_forces(start);
+  set_law_forces(start, model::Side::right);
   if (start.auxiliary_acceleration.size() == 0) start.auxiliary_acceleration = Vector::Zero(n);
   parts_.mass.makeCompressed();
   parts_.damping.makeCompressed();
@@ -46,6 +56,27 @@ void LocallyNonlinear::set_stop_forces(State& state) const {
   for (Index j = 0; j < stop_count(); ++j) state.slider_force[slider_count() + j] = stop_force(j, state.q, state.v);
 }
 
+void LocallyNonlinear::find_law_forces(const State& state, model::Side side, Vector& contact_force) const {
+  for (Index j = 0; j < law_count(); ++j)
+    contact_force[first_law() + j] = parts_.laws[static_cast<std::size_t>(j)]
+                                         .law->at(law_point(j, state, side), state.memory.data() + memory_of(j))
+                                         .force;
+}
+
+void LocallyNonlinear::add_law_breakpoints(double from, double to, std::vector<double>& times) const {
+  for (const auto& law : parts_.laws) numerics::add_switches(law.law->breakpoints(from, to), from, to, times);
+}
+
+void LocallyNonlinear::move_laws(const State& before, State& state) const {
+  for (Index j = 0; j < law_count(); ++j)
+    state.slider_force[first_law() + j] =
+        parts_.laws[static_cast<std::size_t>(j)]
+            .law
+            ->advance(law_point(j, before, model::Side::right), before.memory.data() + memory_of(j),
+                      law_point(j, state, model::Side::left), state.memory.data() + memory_of(j))
+            .force;
+}
+
 SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
                                              const std::vector<double>& coefficients) const {
   std::vector<Eigen::Triplet<double>> entries;
@@ -63,9 +94,21 @@ SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
   return SparseMatrix(matrix + added);
 }
 
+void LocallyNonlinear::add_law_slopes(double model::LawAnswer::*slope, std::vector<double>& coefficients) const {
+  for (Index j = 0; j < law_count(); ++j) {
+    const auto answer = parts_.laws[static_cast<std::size_t>(j)].law->at(law_point(j, parts_.start, model::Side::right),
+                                                                         parts_.start.memory.data() + memory_of(j));
+    coefficients[static_cast<std::size_t>(first_law() + j)] += answer.*slope;
+  }
+}
+
 SparseMatrix LocallyNonlinear::stuck_stiffness() const {
   std::vector<double> coefficients;
   for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
+  if (law_count() > 0) {
+    coefficients.resize(contacts_.size(), 0.0);
+    add_law_slopes(&model::LawAnswer::by_u, coefficients);
+  }
   return with_contacts(parts_.stiffness, coefficients);
 }
 
@@ -73,12 +116,16 @@ SparseMatrix LocallyNonlinear::closed_stiffness() const {
   std::vector<double> coefficients;
   for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
   for (const auto& stop : parts_.stops) coefficients.push_back(stop.stiffness);
+  coefficients.resize(contacts_.size(), 0.0);
+  add_law_slopes(&model::LawAnswer::by_u, coefficients);
   return with_contacts(parts_.stiffness, coefficients);
 }
 
 SparseMatrix LocallyNonlinear::closed_damping() const {
   std::vector<double> coefficients(parts_.sliders.size(), 0.0);
   for (const auto& stop : parts_.stops) coefficients.push_back(stop.damping);
+  coefficients.resize(contacts_.size(), 0.0);
+  add_law_slopes(&model::LawAnswer::by_rate, coefficients);
   return with_contacts(parts_.damping, coefficients);
 }
 
@@ -94,7 +141,7 @@ struct EquilibriumAcceleration::Workspace {
   }
   const LocallyNonlinear& system;
   Loads loads;
-  Vector force, inverse_mass;
+  Vector force, inverse_mass, contact_force;
   numerics::OrderedFactor factor;
 };
 
@@ -108,7 +155,13 @@ void EquilibriumAcceleration::operator()(const State& state, Vector& acceleratio
   w.loads.evaluate(state.t, w.force, side);
   w.force.noalias() -= w.system.damping() * state.v;
   w.force.noalias() -= w.system.stiffness() * state.q;
-  w.system.add_slider_forces(state.slider_force, -1.0, w.force);
+  if (w.system.has_laws_of_time()) {
+    w.contact_force = state.slider_force;
+    w.system.find_law_forces(state, side, w.contact_force);
+    w.system.add_slider_forces(w.contact_force, -1.0, w.force);
+  } else {
+    w.system.add_slider_forces(state.slider_force, -1.0, w.force);
+  }
   of_force(w.force, acceleration);
 }
 

@@ -19,18 +19,20 @@ namespace rubato::system {
 ///   M a + C v + K q + B fc = f(t),   u = B^T q
 ///   sliders  fc = clamp(fc_old + kT (u - u_old), -limit, limit)
 ///   stops    fc = max(0, k (u - gap) + c du/dt) while u > gap, else 0
+///   others   fc = a law of u, du/dt and t with a memory of its own (model::Law)
 ///
 /// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m] e_first - e_second of
-/// each contact: the sliders, then the stops. Immutable; integrators keep what moves in a State and in their
-/// workspace.
+/// each contact: the sliders, then the stops, then the other laws. Immutable; integrators keep what moves in a State
+/// and in their workspace.
 class LocallyNonlinear final : public System {
  public:
   struct Parts {
     SparseMatrix mass, damping, stiffness;  ///< [n x n]
     std::vector<model::Slider> sliders;
     std::vector<model::Stop> stops;
+    std::vector<model::LawBetween> laws;
     Loads loads;
-    State start;  ///< t = 0; q, v of the model; sliders without force; stops as q and v have them
+    State start;  ///< t = 0; q, v of the model; sliders without force; stops and laws as q and v have them
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
     std::vector<char> is_rotation;         ///< [n]: in [rad] instead of [m]; may be empty: none is
     /// Characteristic size of the model for error measures (model::reference_value) [m sqrt(kg)]; 0: it has none.
@@ -44,13 +46,20 @@ class LocallyNonlinear final : public System {
   Index size() const override { return parts_.mass.rows(); }
   Index slider_count() const { return static_cast<Index>(parts_.sliders.size()); }
   Index stop_count() const { return static_cast<Index>(parts_.stops.size()); }
+  Index law_count() const { return static_cast<Index>(parts_.laws.size()); }
   Index contact_count() const { return static_cast<Index>(contacts_.size()); }
   const SparseMatrix& mass() const { return parts_.mass; }
   const SparseMatrix& damping() const { return parts_.damping; }
   const SparseMatrix& stiffness() const { return parts_.stiffness; }
   const std::vector<model::Slider>& sliders() const { return parts_.sliders; }
   const std::vector<model::Stop>& stops() const { return parts_.stops; }
-  /// What a contact joins: that of a slider, or of a stop.
+  const std::vector<model::LawBetween>& laws() const { return parts_.laws; }
+  /// Where the memory of law j begins in that of a state.
+  Index memory_of(Index j) const { return memory_start_[static_cast<std::size_t>(j)]; }
+  Index memory_size() const { return memory_size_; }
+  /// The first of the laws among the contacts.
+  Index first_law() const { return slider_count() + stop_count(); }
+  /// What a contact joins: that of a slider, of a stop or of another law.
   struct Ends {
     Index first = ground, second = ground;
   };
@@ -83,20 +92,41 @@ class LocallyNonlinear final : public System {
   }
   /// Sets the forces of all stops to what displacements and velocities of the state make them.
   void set_stop_forces(State& state) const;
+  /// What law j sees at a state.
+  model::LawPoint law_point(Index j, const State& state, model::Side side) const {
+    const Index i = first_law() + j;
+    return {relative_displacement(i, state.q), relative_displacement(i, state.v), state.t, side};
+  }
+  /// Sets the forces of all laws at a state, by the memory that it has.
+  void set_law_forces(State& state, model::Side side) const { find_law_forces(state, side, state.slider_force); }
+  /// Writes them behind those of sliders and stops.
+  void find_law_forces(const State& state, model::Side side, Vector& contact_force) const;
+  /// Adds the times in (from, to) at which laws are not smooth to those of loads; rising.
+  void add_law_breakpoints(double from, double to, std::vector<double>& times) const;
+  /// Whether a law depends on time, so that its force at a state has a left and a right limit.
+  bool has_laws_of_time() const { return has_laws_of_time_; }
+  /// Sets forces and memory of all laws at a state that the motion from `before` reaches without turning back.
+  void move_laws(const State& before, State& state) const;
   /// out += factor * B fc, of all contacts
   void add_slider_forces(const Vector& slider_force, double factor, Vector& out) const;
 
-  /// K plus kT of all sliders: the stiffness with the sliders stuck and the stops open.
+  /// K plus kT of all sliders and the slopes of the laws at the start: the stiffness with the sliders stuck and the
+  /// stops open.
   SparseMatrix stuck_stiffness() const;
   /// C and that K with all stops closed besides: what bounds the step of explicit methods.
   SparseMatrix closed_damping() const;
   SparseMatrix closed_stiffness() const;
 
  private:
+  /// Adds the slopes of the laws at the start to those of all contacts.
+  void add_law_slopes(double model::LawAnswer::*slope, std::vector<double>& coefficients) const;
   SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
 
   Parts parts_;
   std::vector<Ends> contacts_;
+  std::vector<Index> memory_start_;
+  Index memory_size_ = 0;
+  bool has_laws_of_time_ = false;
   bool has_diagonal_mass_ = false;
 };
 

@@ -33,7 +33,7 @@ class StructureSpace final : public ErrorSpace {
   }
   bool has_stops() const override { return system_.stop_count() > 0; }
   bool touches(const system::State& state) const override {
-    return (state.slider_force.tail(system_.stop_count()).array() > 0.0).any();
+    return (state.slider_force.segment(system_.slider_count(), system_.stop_count()).array() > 0.0).any();
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
   double remembered_squared(const Vector& x) override { return memory_.squared(x); }

@@ -54,7 +54,7 @@ ResponseScales response_scales(const system::LocallyNonlinear& system, const sys
     const double length = norm(x);
     if (!(length > 0.0)) return {};
     double work = x.dot(stiffness * x);
-    for (Index i = system.slider_count(); i < system.contact_count(); ++i)
+    for (Index i = system.slider_count(); i < system.first_law(); ++i)
       if (state.slider_force[i] > 0.0)
         work += system.stops()[static_cast<std::size_t>(i - system.slider_count())].stiffness *
                 std::pow(system.relative_displacement(i, x), 2);

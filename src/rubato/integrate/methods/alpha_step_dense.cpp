@@ -1,9 +1,11 @@
 #include <rubato/integrate/contact_problem.hpp>
+#include <rubato/integrate/law_problem.hpp>
 #include <rubato/integrate/methods/alpha_step.hpp>
 
 #include <Eigen/Cholesky>
 
 #include <cmath>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
@@ -32,6 +34,7 @@ class DenseAlphaStep final : public AlphaStep {
     for (const auto& slider : system.sliders()) stiffness_.push_back(slider.stiffness);
     trial_.resize(m_);
     penetration_.resize(m_);
+    if (system.law_count() > 0) laws_.emplace(system);
     a1_.resize(n_);
     qs_.resize(n_);
     vs_.resize(n_);
@@ -64,7 +67,10 @@ class DenseAlphaStep final : public AlphaStep {
     if (terms_ > 0) on_load_ = factor.solve(pattern);
     if (m_ > 0) on_contact_ = factor.solve(joins);
     const Matrix per_force = end * joins.transpose() * Matrix(on_contact_);
-    contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
+    if (laws_)
+      laws_->reset(p_.beta * h * h * per_force, p_.gamma * h * per_force);
+    else
+      contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
     return true;
   }
 
@@ -89,7 +95,13 @@ class DenseAlphaStep final : public AlphaStep {
       for (Index i = 0; i < m_; ++i) a1_ -= (p_.alpha_f * from.slider_force[i]) * on_contact_.col(i);
 
     const double bh2 = p_.beta * h * h;
-    if (m_ > 0) {
+    if (laws_) {
+      set_free_motion();
+      const StepReport report = laws_->solve(from, to);
+      if (report.outcome != StepOutcome::accepted)
+        return std::isfinite(a1_.sum()) ? report : StepReport{StepOutcome::not_finite, worst()};
+      for (Index i = 0; i < m_; ++i) a1_ -= (end * to.slider_force[i]) * on_contact_.col(i);
+    } else if (m_ > 0) {
       double in_place[contacts_in_place];
       double* const trial = m_ <= contacts_in_place ? in_place : trial_.data();
       for (Index i = 0; i < sliders_; ++i) {
@@ -123,6 +135,19 @@ class DenseAlphaStep final : public AlphaStep {
   }
 
  private:
+  /// What the contacts do without forces at the end of the step.
+  void set_free_motion() {
+    const double bh2 = p_.beta * h_ * h_, hg = h_ * p_.gamma;
+    for (Index i = 0; i < m_; ++i) {
+      const Index a = first_[static_cast<std::size_t>(i)], b = second_[static_cast<std::size_t>(i)];
+      double u = 0.0, rate = 0.0;
+      if (a != ground) u += qs_[a] + bh2 * a1_[a], rate += vs_[a] + hg * a1_[a];
+      if (b != ground) u -= qs_[b] + bh2 * a1_[b], rate -= vs_[b] + hg * a1_[b];
+      laws_->free_displacement()[i] = u;
+      laws_->free_velocity()[i] = rate;
+    }
+  }
+
   Index worst() const {
     for (Index i = 0; i < n_; ++i)
       if (!std::isfinite(a1_[i])) return i;
@@ -139,6 +164,7 @@ class DenseAlphaStep final : public AlphaStep {
   Wide on_load_, on_contact_;  // S^-1 times the patterns of the loads, and B
   Column a1_, qs_, vs_, qc_, vc_;
   ContactProblem contact_;
+  std::optional<LawProblem> laws_;  // in its place where there are others than sliders and stops
   Vector trial_, penetration_;
 };
 

@@ -1,4 +1,5 @@
 #include <rubato/integrate/contact_problem.hpp>
+#include <rubato/integrate/law_problem.hpp>
 #include <rubato/integrate/methods/alpha_step.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
@@ -76,6 +77,7 @@ class SparseAlphaStep final : public AlphaStep {
     }
     if (system.has_diagonal_mass()) mass_ = system.mass().diagonal();
     gather_products();
+    if (system.law_count() > 0) laws_.emplace(system);
     right_.resize(n_);
     last_.resize(k_);
     push_.resize(k_);
@@ -98,7 +100,10 @@ class SparseAlphaStep final : public AlphaStep {
     }
     if (m_ == 0) return true;
     const Matrix per_force = end * (joins.transpose() * inverse * joins);
-    contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
+    if (laws_)
+      laws_->reset(p_.beta * h * h * per_force, p_.gamma * h * per_force);
+    else
+      contact_.reset(p_.beta * h * h * per_force, p_.gamma * h * per_force, system_.sliders(), system_.stops());
     return true;
   }
 
@@ -118,22 +123,12 @@ class SparseAlphaStep final : public AlphaStep {
     }
     if (m_ > 0) {
       factor_.last_solution(right_, last_);
-      for (Index i = 0; i < sliders_; ++i) {
-        const double travel = free_travel(first_[static_cast<std::size_t>(i)], from) -
-                              free_travel(second_[static_cast<std::size_t>(i)], from);
-        trial_[i] = from.slider_force[i] + system_.sliders()[static_cast<std::size_t>(i)].stiffness * travel;
-      }
-      for (Index i = sliders_; i < m_; ++i) {
-        const auto& stop = system_.stops()[static_cast<std::size_t>(i - sliders_)];
-        const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
-        penetration_[i] = system_.relative_displacement(i, from.q) - stop.gap +
-                          (free_travel(first, from) - free_travel(second, from));
-        trial_[i] = stop.stiffness * penetration_[i] +
-                    stop.damping * (free_velocity(first, from) - free_velocity(second, from));
-      }
-      if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data(), penetration_.data())) {
-        if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
-        return {StepOutcome::not_finite, -1};
+      if (laws_) {
+        set_free_motion(from);
+        const StepReport report = laws_->solve(from, to);
+        if (report.outcome != StepOutcome::accepted) return report;
+      } else if (const StepReport report = solve_contacts(from, to); report.outcome != StepOutcome::accepted) {
+        return report;
       }
       push_.setZero();
       add_to_contacts(1.0 - p_.alpha_f, to.slider_force, push_.data());
@@ -143,6 +138,37 @@ class SparseAlphaStep final : public AlphaStep {
   }
 
  private:
+  StepReport solve_contacts(const system::State& from, system::State& to) {
+    for (Index i = 0; i < sliders_; ++i) {
+      const double travel = free_travel(first_[static_cast<std::size_t>(i)], from) -
+                            free_travel(second_[static_cast<std::size_t>(i)], from);
+      trial_[i] = from.slider_force[i] + system_.sliders()[static_cast<std::size_t>(i)].stiffness * travel;
+    }
+    for (Index i = sliders_; i < m_; ++i) {
+      const auto& stop = system_.stops()[static_cast<std::size_t>(i - sliders_)];
+      const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
+      penetration_[i] =
+          system_.relative_displacement(i, from.q) - stop.gap + (free_travel(first, from) - free_travel(second, from));
+      trial_[i] =
+          stop.stiffness * penetration_[i] + stop.damping * (free_velocity(first, from) - free_velocity(second, from));
+    }
+    if (!contact_.solve(trial_.data(), from.slider_force.data(), to.slider_force.data(), penetration_.data())) {
+      if (std::isfinite(trial_.sum())) return {StepOutcome::not_converged, contact_.worst()};
+      return {StepOutcome::not_finite, -1};
+    }
+    return {};
+  }
+
+  /// What the contacts do without forces at the end of the step.
+  void set_free_motion(const system::State& from) {
+    for (Index i = 0; i < m_; ++i) {
+      const Index first = first_[static_cast<std::size_t>(i)], second = second_[static_cast<std::size_t>(i)];
+      laws_->free_displacement()[i] =
+          system_.relative_displacement(i, from.q) + (free_travel(first, from) - free_travel(second, from));
+      laws_->free_velocity()[i] = free_velocity(first, from) - free_velocity(second, from);
+    }
+  }
+
   /// The matrices of the products: stiffness first, then damping unless Rayleigh, then mass unless diagonal.
   void gather_products() {
     std::vector<const SparseMatrix*> matrices{&system_.stiffness()};
@@ -309,6 +335,7 @@ class SparseAlphaStep final : public AlphaStep {
   std::vector<double> diagonal_, coefficient_;
   Vector combined_, right_, last_, push_, trial_, penetration_;
   ContactProblem contact_;
+  std::optional<LawProblem> laws_;  // in its place where there are others than sliders and stops
 };
 
 }  // namespace

@@ -113,6 +113,7 @@ class WilsonStepper final : public Stepper {
     loads_.evaluate(from.t, t1);
     for (std::size_t i = 0; i < load_.size(); ++i)
       load_[i] = loads_.start(i) + theta_ * (loads_.end(i) - loads_.start(i));
+    beyond_.t = from.t + theta_ * h;
     StepReport report = step_->solve(from, load_.data(), beyond_);
     if (report.outcome != StepOutcome::accepted) {
       if (loads_.fault() >= 0) report.worst = loads_.fault();
@@ -129,6 +130,7 @@ class WilsonStepper final : public Stepper {
       to.slider_force[i] = std::clamp(from.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
     }
     system_.set_stop_forces(to);
+    system_.move_laws(from, to);
     return report;
   }
 

@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/contact_problem.hpp>
+#include <rubato/integrate/law_problem.hpp>
 #include <rubato/integrate/load_values.hpp>
 #include <rubato/integrate/methods/steppers.hpp>
 
@@ -8,6 +9,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace rubato::integrate {
@@ -26,6 +28,7 @@ class ExponentialStepper final : public Stepper {
         m_(system.contact_count()),
         sliders_(system.slider_count()),
         loads_(system.loads()) {
+    if (system.law_count() > 0) laws_.emplace(system);
     y0_.resize(2 * n_);
     y1_.resize(2 * n_);
     input_.resize(2 * static_cast<Index>(loads_.count()));
@@ -48,8 +51,15 @@ class ExponentialStepper final : public Stepper {
     y0_.tail(n_) = h * from.v;
     y1_.noalias() = propagator_ * y0_;
     if (input_.size() > 0) y1_.noalias() += on_load_ * input_;
-    if (m_ > 0) {
-      y1_.noalias() -= (on_value_ - on_slope_) * from.slider_force;
+    if (m_ > 0) y1_.noalias() -= (on_value_ - on_slope_) * from.slider_force;
+    to.t = t1;
+    if (laws_) {
+      set_free_motion();
+      const StepReport report = laws_->solve(from, to);
+      if (report.outcome != StepOutcome::accepted)
+        return {report.outcome, report.outcome == StepOutcome::not_finite ? loads_.fault() : report.worst};
+      y1_.noalias() -= on_slope_ * to.slider_force;
+    } else if (m_ > 0) {
       for (Index i = 0; i < sliders_; ++i) {
         const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
         double travel = 0.0;
@@ -83,6 +93,18 @@ class ExponentialStepper final : public Stepper {
   int factorisations() const override { return factorisations_; }
 
  private:
+  /// What the contacts do without forces at the end of the step.
+  void set_free_motion() {
+    for (Index i = 0; i < m_; ++i) {
+      const auto& ends = system_.contacts()[static_cast<std::size_t>(i)];
+      double u = 0.0, rate = 0.0;
+      if (ends.first != ground) u += y1_[ends.first], rate += y1_[n_ + ends.first];
+      if (ends.second != ground) u -= y1_[ends.second], rate -= y1_[n_ + ends.second];
+      laws_->free_displacement()[i] = u;
+      laws_->free_velocity()[i] = rate / h_;
+    }
+  }
+
   // In the time s = (t - t0)/h and with h v in place of v, so that the exponent is small numbers.
   bool prepare(double h) {
     ++factorisations_;
@@ -125,8 +147,12 @@ class ExponentialStepper final : public Stepper {
     }
     if (m_ > 0) {
       const Matrix joins = inputs.rightCols(m_);
-      contact_.reset(joins.transpose() * on_slope_.topRows(n_), joins.transpose() * on_slope_.bottomRows(n_) / h,
-                     system_.sliders(), system_.stops());
+      const Matrix compliance = joins.transpose() * on_slope_.topRows(n_);
+      const Matrix velocity_compliance = joins.transpose() * on_slope_.bottomRows(n_) / h;
+      if (laws_)
+        laws_->reset(compliance, velocity_compliance);
+      else
+        contact_.reset(compliance, velocity_compliance, system_.sliders(), system_.stops());
     }
     h_ = h;
     return flow.allFinite();
@@ -140,6 +166,7 @@ class ExponentialStepper final : public Stepper {
   Matrix propagator_, on_load_, on_value_, on_slope_;
   Vector y0_, y1_, input_, trial_, penetration_;
   ContactProblem contact_;
+  std::optional<LawProblem> laws_;  // in its place where there are others than sliders and stops
 };
 
 }  // namespace

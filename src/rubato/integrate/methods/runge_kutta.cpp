@@ -38,10 +38,12 @@ class RungeKuttaStepper final : public Stepper {
         stage_.v += (h * tableau_.a[row][j]) * slope_v_[j];
       }
       stage_.t = tableau_.c[row] == 1.0 ? t1 : from.t + tableau_.c[row] * h;
-      if (i == 0)
+      if (i == 0) {
         stage_.slider_force = from.slider_force;
-      else
+        stage_.memory = from.memory;
+      } else {
         slide(from, stage_);
+      }
       slope_q_[row] = stage_.v;
       accelerate(tableau_.c[row] == 0.0 ? model::Side::right : model::Side::left, slope_v_[row]);
     }
@@ -80,6 +82,7 @@ class RungeKuttaStepper final : public Stepper {
       end.slider_force[i] = std::clamp(from.slider_force[i] + slider.stiffness * travel, -slider.limit, slider.limit);
     }
     system_.set_stop_forces(end);
+    system_.move_laws(from, end);
   }
 
   void accelerate(model::Side side, Vector& acceleration) {

@@ -3,7 +3,7 @@
 #include <rubato/model/description.hpp>
 #include <rubato/model/fields/key.hpp>
 
-// The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops; and of [damping].
+// The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops and other laws; and of [damping].
 namespace rubato::model {
 
 void fields(auto& visit, Like<CoordinateDescription> auto& coordinate) {
@@ -47,6 +47,28 @@ void fields(auto& visit, Like<StopDescription> auto& stop) {
   visit.quantity("stiffness", stop.stiffness, {.required = true, .unit = "N/m", .says = "k", .range = Range::positive});
   visit.quantity("damping", stop.damping,
                  {.unit = "N s/m", .says = "c while closed; the force never pulls", .unless = "0"});
+}
+
+/// Of the kinds of model/laws: each says its own keys.
+void fields(auto& visit, Like<LawDescription> auto& law) {
+  const LawKind& kind = law_kind(law.kind);
+  visit.numbered_name(kind.table, law.name, law.where, {.says = "heads its columns in the results"});
+  visit.between("between", law.between, law.between_where, {});
+  visit.text("joint", law.joint, {.says = "instead of between: it acts on what this joint leaves free"});
+  visit.where_given(law.joint_where, "joint");
+  visit.exactly_one_of({"between", "joint"});
+  visit.check([&](auto& reader) {
+    if (!law.joint.empty()) reader.refuse_beside("joint", {"between"});
+    if (law.joint.empty() && law.between[0].empty()) reader.refuse_to_lack("between");
+  });
+  for (std::size_t i = 0; i < kind.keys.size(); ++i) {
+    const LawKey& key = kind.keys[i];
+    const Key about{.required = !key.preset, .unit = key.unit, .says = key.meaning, .unless = key.unless.c_str()};
+    if (key.type == LawKey::Type::formula)
+      visit.formula(key.name, law.values[i], about);
+    else
+      visit.quantity(key.name, law.values[i], about);
+  }
 }
 
 void fields(auto& visit, Like<ModalDamping> auto& damping) {

@@ -54,6 +54,12 @@ class QuantityVisitor {
   void tables(const char*, const std::vector<Description>& descriptions, const char*) const {
     for (const Description& description : descriptions) fields(*this, description);
   }
+  template <class Description>
+  void tables_like(const char*, const std::vector<Description>& descriptions, const Description& prototype,
+                   const char*) const {
+    for (const Description& description : descriptions)
+      if (description.kind == prototype.kind) fields(*this, description);
+  }
   template <class Moving>
   void held_or_moving(const char*, const char*, const std::vector<HeldDescription>& held, Held what,
                       const std::vector<Moving>& moving, const char*) const {

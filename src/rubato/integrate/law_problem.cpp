@@ -1,0 +1,165 @@
+#include <rubato/integrate/law_problem.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int most_iterations = 60;
+
+}  // namespace
+
+LawProblem::LawProblem(const system::LocallyNonlinear& system)
+    : system_(system),
+      m_(system.contact_count()),
+      boxes_(system.first_law()),
+      u_free_(m_),
+      v_free_(m_),
+      trial_(m_),
+      penetration_(m_),
+      box_trial_(boxes_),
+      box_penetration_(boxes_),
+      force_(m_),
+      next_(m_),
+      u_(m_),
+      v_(m_),
+      start_(static_cast<std::size_t>(system.law_count())),
+      end_(start_),
+      answer_(start_.size()),
+      reach_(start_.size()) {}
+
+void LawProblem::reset(const Matrix& compliance, const Matrix& velocity_compliance) {
+  compliance_ = compliance;
+  velocity_compliance_ = velocity_compliance;
+  linearised_.reset(compliance, velocity_compliance, system_.sliders(), system_.stops(), system_.law_count());
+  if (boxes_ > 0)
+    boxes_alone_.reset(compliance.topLeftCorner(boxes_, boxes_), velocity_compliance.topLeftCorner(boxes_, boxes_),
+                       system_.sliders(), system_.stops());
+}
+
+// As ContactProblem has them.
+void LawProblem::set_box_trials(const system::State& from) {
+  for (Index i = 0; i < boxes_; ++i) {
+    penetration_[i] = 0.0;
+    if (i < system_.slider_count()) {
+      const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
+      trial_[i] = from.slider_force[i] + slider.stiffness * (u_free_[i] - system_.relative_displacement(i, from.q));
+    } else {
+      const auto& stop = system_.stops()[static_cast<std::size_t>(i - system_.slider_count())];
+      penetration_[i] = u_free_[i] - stop.gap;
+      trial_[i] = stop.stiffness * penetration_[i] + stop.damping * v_free_[i];
+    }
+  }
+}
+
+/// The forces of sliders and stops for given ones of the laws.
+bool LawProblem::solve_boxes(const system::State& from, Vector& force) {
+  if (boxes_ == 0) return true;
+  const Index laws = m_ - boxes_;
+  for (Index i = 0; i < boxes_; ++i) {
+    const double u = compliance_.row(i).tail(laws).dot(force.tail(laws));
+    if (i < system_.slider_count()) {
+      box_trial_[i] = trial_[i] - system_.sliders()[static_cast<std::size_t>(i)].stiffness * u;
+      box_penetration_[i] = 0.0;
+    } else {
+      const auto& stop = system_.stops()[static_cast<std::size_t>(i - system_.slider_count())];
+      box_penetration_[i] = penetration_[i] - u;
+      box_trial_[i] =
+          trial_[i] - stop.stiffness * u - stop.damping * velocity_compliance_.row(i).tail(laws).dot(force.tail(laws));
+    }
+  }
+  return boxes_alone_.solve(box_trial_.data(), from.slider_force.data(), force.data(), box_penetration_.data());
+}
+
+/// Answers of the laws where given forces lead, and the largest error of their equations, over their round-off.
+double LawProblem::evaluate(const Vector& force, system::State& to) {
+  u_ = u_free_;
+  v_ = v_free_;
+  u_.noalias() -= compliance_ * force;
+  v_.noalias() -= velocity_compliance_ * force;
+  double largest = 0.0;
+  for (std::size_t j = 0; j < answer_.size(); ++j) {
+    const Index i = boxes_ + static_cast<Index>(j), place = system_.memory_of(static_cast<Index>(j));
+    end_[j].u = u_[i];
+    end_[j].rate = v_[i];
+    answer_[j] = system_.laws()[j].law->advance(start_[j], memory_ + place, end_[j], to.memory.data() + place);
+    const double round_off =
+        epsilon * (std::abs(answer_[j].force) + std::abs(force[i]) + std::abs(answer_[j].by_u) * reach_[j] +
+                   std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])));
+    const double error = std::abs(answer_[j].force - force[i]);
+    if (!std::isfinite(error)) {
+      worst_ = i;
+      return HUGE_VAL;
+    }
+    const double share = error == 0.0 ? 0.0 : error / std::max(round_off, std::numeric_limits<double>::min());
+    if (share >= largest) {
+      largest = share;
+      worst_ = i;
+    }
+  }
+  return largest;
+}
+
+StepReport LawProblem::solve(const system::State& from, system::State& to) {
+  constexpr double enough = 16.0;  // of round-off
+  constexpr double good = 1e6;     // a correction that no longer helps leaves at most 1e-10 of the forces
+  set_box_trials(from);
+  memory_ = from.memory.data();
+  for (std::size_t j = 0; j < start_.size(); ++j) {
+    const Index law = static_cast<Index>(j), i = boxes_ + law;
+    start_[j] = system_.law_point(law, from, model::Side::right);
+    end_[j].t = to.t;
+    end_[j].side = model::Side::left;
+    reach_[j] = std::max(std::abs(start_[j].u), std::abs(u_free_[i]));
+    for (const Index end : {system_.contacts()[static_cast<std::size_t>(i)].first,
+                            system_.contacts()[static_cast<std::size_t>(i)].second})
+      if (end != ground) reach_[j] = std::max(reach_[j], std::abs(from.q[end]));
+  }
+  force_ = from.slider_force;
+  if (!solve_boxes(from, force_)) return failure(StepOutcome::not_converged);
+  double error = evaluate(force_, to);
+  for (int iteration = 0; error > enough; ++iteration) {
+    if (!std::isfinite(error)) return failure(StepOutcome::not_finite);
+    if (iteration == most_iterations) return failure(StepOutcome::not_converged);
+    for (std::size_t j = 0; j < answer_.size(); ++j) {
+      const Index i = boxes_ + static_cast<Index>(j);
+      const model::LawAnswer& a = answer_[j];
+      linearised_.set_slopes(i, a.by_u, a.by_rate);
+      trial_[i] = a.force + a.by_u * (u_free_[i] - u_[i]) + a.by_rate * (v_free_[i] - v_[i]);
+    }
+    if (!linearised_.solve(trial_.data(), from.slider_force.data(), next_.data(), penetration_.data()))
+      return failure(StepOutcome::not_converged);
+    // Along the way to the solution of the linear equations, sliders and stops staying exact.
+    const double before = error;
+    double share = 1.0;
+    next_ -= force_;  // the correction
+    for (;; share *= 0.5) {
+      trial_force_ = force_ + share * next_;
+      if (share < 1.0 && !solve_boxes(from, trial_force_)) return failure(StepOutcome::not_converged);
+      error = evaluate(trial_force_, to);
+      if (error < before * (1.0 - 1e-4 * share) || error <= enough) break;
+      if (share < 1e-6) {
+        if (before > good || !std::isfinite(error)) return failure(StepOutcome::not_converged);
+        trial_force_ = force_;  // as good as it gets
+        error = evaluate(force_, to);
+        break;
+      }
+    }
+    const bool is_better = error < before;
+    force_ = trial_force_;
+    if (!is_better) break;
+  }
+  // The forces that the laws have at the end are those that the step took.
+  to.slider_force = force_;
+  return {};
+}
+
+StepReport LawProblem::failure(StepOutcome outcome) const {
+  if (!u_free_.allFinite() || !v_free_.allFinite()) return {StepOutcome::not_finite, -1};
+  return {outcome, worst_};
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,250 @@
+#include <rubato/core/error.hpp>
+#include <rubato/model/laws/law_kind.hpp>
+#include <rubato/numerics/gauss_legendre.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::model {
+namespace {
+
+/// The solution of dy/dx = 1 - sign y^n for y >= 0: what a Bouc-Wen element does between two turns, where y is its
+/// internal variable over the limit of it. In closed form for n = 1 and 2.
+class PowerFlow {
+ public:
+  explicit PowerFlow(double n) : n_(n) {}
+
+  /// y after a length x >= 0 of the motion that starts at y0 and in which y grows; y0 < 1 where sign > 0.
+  double grow(double y0, double x, double sign) const {
+    if (sign == 0.0) return y0 + x;
+    if (n_ == 1.0) return sign > 0.0 ? y0 - (1.0 - y0) * std::expm1(-x) : y0 + (1.0 + y0) * std::expm1(x);
+    if (n_ == 2.0) {
+      const double t = sign > 0.0 ? std::tanh(x) : std::tan(x);
+      return (y0 + t) / (1.0 + sign * y0 * t);
+    }
+    return at_time(y0, x, sign);
+  }
+
+  /// y after a length x of the motion dy/dx = -(1 - sign y^n), in which it falls; below zero where it would pass it,
+  /// `left` of the length then being what is left of x.
+  double fall(double y0, double x, double sign, double& left) const {
+    left = 0.0;
+    if (sign == 0.0) {
+      left = x - y0;
+      return y0 - x;
+    }
+    if (n_ == 1.0) {
+      const double down = sign > 0.0 ? -std::log1p(-y0) : std::log1p(y0);
+      left = x - down;
+      return sign > 0.0 ? 1.0 - (1.0 - y0) * std::exp(x) : (1.0 + y0) * std::exp(-x) - 1.0;
+    }
+    if (n_ == 2.0) {
+      const double down = sign > 0.0 ? std::atanh(y0) : std::atan(y0);
+      left = x - down;
+      if (left > 0.0) return -1.0;
+      const double t = sign > 0.0 ? std::tanh(x) : std::tan(x);
+      return (y0 - t) / (1.0 - sign * y0 * t);
+    }
+    left = x - time_between(0.0, y0, sign);
+    return left > 0.0 ? -1.0 : at_time(y0, -x, sign);
+  }
+
+ private:
+  double rate(double y, double sign) const { return 1.0 - sign * std::pow(y, n_); }
+
+  /// The length from `from` to `to`, the integral of dy / (1 - sign y^n).
+  double time_between(double from, double to, double sign) const {
+    if (from > to) return -time_between(to, from, sign);
+    constexpr double first = 0.3;  // up to which a series is better: y^n is not smooth at zero
+    double time = 0.0;
+    if (from < first) {
+      const double end = std::min(to, first);
+      time = series(end, sign) - series(from, sign);
+      from = end;
+    }
+    static const numerics::GaussLegendre<16> rule;
+    while (from < to) {
+      // Short enough for the pole: towards 1 in steps of the distance to it, at -1 beside the n-th roots.
+      const double most = sign > 0.0 ? 0.5 * (1.0 - from) : 0.7 / std::max(n_, 2.0) * std::max(from, 0.5);
+      const double end = to - from < 1.2 * most ? to : from + most;
+      double sum = 0.0;
+      for (std::size_t i = 0; i < rule.node.size(); ++i)
+        sum += rule.weight[i] / rate(from + rule.node[i] * (end - from), sign);
+      time += sum * (end - from);
+      from = end;
+    }
+    return time;
+  }
+
+  /// Sum of sign^k y^(kn+1) / (kn+1).
+  double series(double y, double sign) const {
+    const double factor = sign * std::pow(y, n_);
+    double sum = 0.0, power = y;
+    for (int k = 0; k < 60; ++k) {
+      const double term = power / (k * n_ + 1.0);
+      sum += term;
+      if (std::abs(term) <= 1e-17 * sum) break;
+      power *= factor;
+    }
+    return sum;
+  }
+
+  /// The y at which the length from y0 is x, of either sign: Newton's method on time_between(), within bounds.
+  double at_time(double y0, double x, double sign) const {
+    constexpr double endless = 40.0;  // within which y comes as near to 1 as round-off tells
+    if (x == 0.0) return y0;
+    if (x > endless) return 1.0;
+    double low = x > 0.0 ? y0 : 0.0, high = x > 0.0 ? 1.0 : y0, y = y0, time = 0.0;  // the length from y0 to y
+    for (int i = 0; i < 100; ++i) {
+      double next = y + (x - time) * rate(y, sign);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      time += time_between(y, next, sign);
+      const double step = std::abs(next - y);
+      y = next;
+      (time < x ? low : high) = y;
+      if (step <= 4.0 * std::numeric_limits<double>::epsilon() * y) break;
+    }
+    return y;
+  }
+
+  double n_;
+};
+
+/// f = alpha k u + (1 - alpha) k z, dz/dt = du/dt (A - |z|^n (gamma + beta sgn(z du/dt))): Bouc 1967; Wen 1976, eqs. 1
+/// to 4. Between turns of u, z is a function of u, which advance() follows exactly; its memory is z [m].
+class BoucWen final : public Law {
+ public:
+  BoucWen(double stiffness, double ratio, double a, double beta, double gamma, double n)
+      : elastic_(ratio * stiffness),
+        hysteretic_((1.0 - ratio) * stiffness),
+        a_(a),
+        beta_(beta),
+        gamma_(gamma),
+        n_(n),
+        flow_(n) {}
+
+  Index memory_size() const override { return 1; }
+
+  LawAnswer advance(const LawPoint& from, const double* memory, const LawPoint& to, double* next) const override {
+    double slope = 0.0;
+    next[0] = moved(memory[0], to.u - from.u, to.rate, slope);
+    return {elastic_ * to.u + hysteretic_ * next[0], elastic_ + hysteretic_ * slope, 0.0};
+  }
+
+  LawAnswer at(const LawPoint& point, const double* memory) const override {
+    const double z = memory[0];
+    double slope = rate(z, point.rate);
+    if (point.rate == 0.0) slope = a_ - std::pow(std::abs(z), n_) * gamma_;
+    return {elastic_ * point.u + hysteretic_ * z, elastic_ + hysteretic_ * slope, 0.0};
+  }
+
+  /// Of the springs alpha k, and of the other what it gives back where it unloads as steeply as it started:
+  /// (1 - alpha) k z^2 / (2 A).
+  double stored_energy(double u, const double* memory) const override {
+    return 0.5 * elastic_ * u * u + 0.5 * hysteretic_ * memory[0] * memory[0] / a_;
+  }
+
+  /// Its power is (1 - alpha) k z (du/dt - dz/dt / A).
+  double dissipated(const LawPoint& from, const double* memory, const LawPoint& to, const double* next) const override {
+    static const numerics::GaussLegendre<8> rule;
+    const double travel = to.u - from.u;
+    double work = 0.0, slope = 0.0;
+    for (std::size_t i = 0; i < rule.node.size(); ++i)
+      work += rule.weight[i] * moved(memory[0], rule.node[i] * travel, to.rate, slope);
+    return hysteretic_ * (work * travel - 0.5 * (next[0] * next[0] - memory[0] * memory[0]) / a_);
+  }
+
+  double largest_stiffness() const override {
+    // Where z and the motion are opposite the slope is A + (beta - gamma) |z|^n, at most at the limit of z.
+    const double opposite = beta_ > gamma_ && beta_ + gamma_ > 0.0 ? (beta_ - gamma_) / (beta_ + gamma_) : 0.0;
+    return elastic_ + std::max(hysteretic_, 0.0) * a_ * (1.0 + opposite);
+  }
+  bool is_odd() const override { return true; }
+
+ private:
+  /// dz/du where the motion goes in a direction.
+  double rate(double z, double direction) const {
+    const double sign = z * direction > 0.0 ? 1.0 : z * direction < 0.0 ? -1.0 : 0.0;
+    return a_ - std::pow(std::abs(z), n_) * (gamma_ + beta_ * sign);
+  }
+
+  /// z after a travel without a turn, with its slope there by the travel.
+  /// @param rate_then  of u at the end: where nothing has moved it says in which direction it goes on
+  double moved(double z, double travel, double rate_then, double& slope) const {
+    if (travel == 0.0) {
+      slope = rate(z, rate_then);
+      return z;
+    }
+    // Along the travel, w = z in its direction: dw/dx = A - c |w|^n.
+    const double direction = travel > 0.0 ? 1.0 : -1.0;
+    double w = direction * z, left = std::abs(travel);
+    if (w < 0.0) {
+      const double c = gamma_ - beta_, limit = limit_of(c);
+      double beyond = 0.0;
+      const double y = -w / limit, fallen = flow_.fall(y, a_ * left / limit, sign_of(c), beyond);
+      if (beyond <= 0.0) {
+        w = -limit * std::max(fallen, 0.0);
+        slope = a_ - c * std::pow(std::abs(w), n_);
+        return direction * w;
+      }
+      w = 0.0;
+      left = beyond * limit / a_;
+    }
+    const double c = gamma_ + beta_, limit = limit_of(c), y = c > 0.0 ? std::min(w / limit, 1.0) : w / limit;
+    w = limit * flow_.grow(y, a_ * left / limit, sign_of(c));
+    slope = a_ - c * std::pow(w, n_);
+    return direction * w;
+  }
+
+  static double sign_of(double c) { return c > 0.0 ? 1.0 : c < 0.0 ? -1.0 : 0.0; }
+  /// That of |z|, where c > 0; a scale of it elsewhere [m].
+  double limit_of(double c) const { return c == 0.0 ? 1.0 : std::pow(a_ / std::abs(c), 1.0 / n_); }
+
+  double elastic_, hysteretic_;  // alpha k, (1 - alpha) k [N/m]
+  double a_, beta_, gamma_, n_;
+  PowerFlow flow_;
+};
+
+std::shared_ptr<const Law> make(const LawDescription& description, const numerics::Parameters& parameters,
+                                const std::string& part) {
+  enum { stiffness, ratio, a, beta, gamma, n };
+  std::array<double, 6> value;
+  for (std::size_t i = 0; i < value.size(); ++i)
+    value[i] = evaluate(description.values[i], parameters, part + ": " + law_kind("bouc_wen").keys[i].name);
+  const auto refuse = [&](std::size_t key, const std::string& why) {
+    throw InvalidInput(description.values[key].where.line > 0 ? description.values[key].where : description.where,
+                       fmt::format("{}: {}", part, why));
+  };
+  if (!(value[stiffness] > 0.0)) refuse(stiffness, fmt::format("stiffness must be positive, got {}", value[stiffness]));
+  if (!(value[ratio] >= 0.0 && value[ratio] <= 1.0))
+    refuse(ratio, fmt::format("post_yield_ratio is a share of the stiffness, from 0 to 1, got {}", value[ratio]));
+  if (!(value[a] > 0.0)) refuse(a, fmt::format("A must be positive, got {}", value[a]));
+  if (!(value[n] >= 1.0 && value[n] <= 100.0)) refuse(n, fmt::format("n must lie between 1 and 100, got {}", value[n]));
+  if (!(value[beta] + value[gamma] >= 0.0))
+    refuse(gamma, fmt::format("beta + gamma must not be negative, got {}: z would grow without a limit",
+                              value[beta] + value[gamma]));
+  if (!(value[beta] >= 0.0))
+    refuse(beta, fmt::format("beta must not be negative, got {}: loops would make energy", value[beta]));
+  return std::make_shared<BoucWen>(value[stiffness], value[ratio], value[a], value[beta], value[gamma], value[n]);
+}
+
+}  // namespace
+
+LawKind bouc_wen();
+LawKind bouc_wen() {
+  using Type = LawKey::Type;
+  return {"bouc_wen",
+          "a Bouc-Wen element",
+          "Smooth hysteresis: f = alpha k u + (1 - alpha) k z, dz/dt = du/dt (A - |z|^n (gamma + beta sgn(z du/dt)))",
+          {{"stiffness", Type::number, "N/m", {}, "k, of first loading where A is 1"},
+           {"post_yield_ratio", Type::number, "", 0.0, "alpha: the share of the stiffness that is left after yielding"},
+           {"A", Type::number, "", 1.0, "the slope of z against u at z = 0"},
+           {"beta", Type::number, "1/m^n", 0.5, "how much steeper it unloads than it loads"},
+           {"gamma", Type::number, "1/m^n", 0.5, "with beta the limit of z, (A / (beta + gamma))^(1/n)"},
+           {"n", Type::number, "", 1.0, "how sharply it yields"}},
+          make};
+}
+
+}  // namespace rubato::model

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/time_law.hpp>
+
+#include <limits>
+#include <vector>
+
+namespace rubato::model {
+
+/// What a law sees: a relative displacement, or the coordinate that a joint leaves free, and its rate.
+struct LawPoint {
+  double u = 0.0;           ///< [m] or [rad]
+  double rate = 0.0;        ///< du/dt [m/s] or [rad/s]
+  double t = 0.0;           ///< [s]
+  Side side = Side::right;  ///< which limit to take of a law that jumps at t
+};
+
+/// A force with its slopes. It resists: its ends are pushed together where u and the force are positive.
+struct LawAnswer {
+  double force = 0.0;    ///< f [N] or [N m]
+  double by_u = 0.0;     ///< df/du [N/m]
+  double by_rate = 0.0;  ///< df/d(du/dt) [N s/m]
+};
+
+/// What acts: a formula of a relative motion, with a memory of its own. Immutable, and shared by threads: the memory is
+/// a part of the state of a system and is handed in.
+///
+/// Everything that integrates asks for advance() and at() alone: what a law does within a step, from its start, and
+/// what small motions about a point do.
+class Law {
+ public:
+  virtual ~Law() = default;
+
+  /// How many numbers its history takes; all of them are zero before anything has happened.
+  virtual Index memory_size() const { return 0; }
+
+  /// The force at the end of a step in which u goes from one point to another without turning back.
+  /// @param memory  at `from`
+  /// @param next    the memory at `to`; must not be `memory`
+  /// @return the force, with its slopes by the displacement and the rate at `to` (the consistent tangent)
+  virtual LawAnswer advance(const LawPoint& from, const double* memory, const LawPoint& to, double* next) const = 0;
+
+  /// The force where nothing moves on, with the slopes of small motions that go on as the rate says; from rest, those
+  /// of loading and unloading together.
+  virtual LawAnswer at(const LawPoint& point, const double* memory) const = 0;
+
+  /// Elastic energy [J].
+  virtual double stored_energy(double u, const double* memory) const = 0;
+
+  /// What a step dissipates [J], by a formula of its own; `next` as advance() wrote it.
+  virtual double dissipated(const LawPoint& from, const double* memory, const LawPoint& to,
+                            const double* next) const = 0;
+
+  /// No slope by u is larger: what the step of explicit methods follows [N/m]. Infinite where it is not known.
+  virtual double largest_stiffness() const { return std::numeric_limits<double>::infinity(); }
+
+  virtual bool depends_on_rate() const { return false; }
+  virtual bool depends_on_time() const { return false; }
+  /// Whether the opposite motion makes the opposite force.
+  virtual bool is_odd() const { return false; }
+  /// Times in (from, to) at which a law that depends on time is not smooth, rising.
+  virtual std::vector<double> breakpoints(double from, double to) const {
+    (void)from;
+    (void)to;
+    return {};
+  }
+};
+
+}  // namespace rubato::model

@@ -1,0 +1,31 @@
+#include <rubato/model/laws/law_kind.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace rubato::model {
+
+// Each in its file, bouc_wen.cpp and so on.
+LawKind bouc_wen();
+LawKind nonlinear_spring();
+
+std::span<const LawKind> law_kinds() {
+  static const std::vector<LawKind> all{bouc_wen(), nonlinear_spring()};
+  return all;
+}
+
+LawDescription law_description(const LawKind& kind) {
+  LawDescription description;
+  description.kind = kind.table;
+  for (const LawKey& key : kind.keys) description.values.emplace_back(key.preset.value_or(0.0));
+  return description;
+}
+
+const LawKind& law_kind(std::string_view table) {
+  const auto all = law_kinds();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const LawKind& kind) { return kind.table == table; });
+  if (found == all.end()) throw std::logic_error("there is no law " + std::string(table));
+  return *found;
+}
+
+}  // namespace rubato::model
