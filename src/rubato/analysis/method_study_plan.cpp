@@ -93,6 +93,10 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
     throw InvalidInput(where, fmt::format("{}a method study needs a linear model with a closed-form response, this one "
                                           "has the stop \"{}\"",
                                           title, system.stops().front().name));
+  if (system.law_count() > 0)
+    throw InvalidInput(where, fmt::format("{}a method study needs a linear model with a closed-form response, this one "
+                                          "has the law \"{}\"",
+                                          title, system.laws().front().name));
   if (!system.loads().are_harmonic())
     throw InvalidInput(where, title + "a method study needs harmonic loads, whose response has a closed form");
   try {

@@ -188,14 +188,14 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const system
   std::vector<LimitModes> all;
   context.progress.begin(name, static_cast<double>(limit_count), "limits");
   for (std::size_t limit = 0; limit < limit_count && !context.stop; ++limit) {
-    const SparseMatrix stiffness = limit == 0 ? system.stiffness() : system.stuck_stiffness();
+    const SparseMatrix stiffness = limit == 0 ? system.free_stiffness() : system.stuck_stiffness();
     try {
       const StopScope scope(context.stop);
       // Aside: the dense solvers in it cannot be asked to stop.
-      all.push_back(
-          {limit, stoppable_aside([stiffness, damping = system.damping(), mass = system.mass(), count = plan.count] {
-             return numerics::lowest_damped_modes(stiffness, damping, mass, count);
-           })});
+      all.push_back({limit, stoppable_aside(
+                                [stiffness, damping = system.free_damping(), mass = system.mass(), count = plan.count] {
+                                  return numerics::lowest_damped_modes(stiffness, damping, mass, count);
+                                })});
     } catch (const Stopped&) {
       break;
     }

@@ -1,6 +1,7 @@
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
+#include <rubato/results/columns/law_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -69,6 +70,12 @@ StaticEquilibrium equilibrium_of(const std::string& name, const Location& where,
       throw InvalidInput(where, fmt::format("{}there is no equilibrium: where {} slip nothing else resists a motion of "
                                             "{}; lower the load, or support it",
                                             title, slipping(found, system), list_of(found.moving, system)));
+    case StaticOutcome::gives_way_on_the_way:
+      throw InvalidInput(
+          where, fmt::format("{}there is no equilibrium that loads grown from zero lead to: at {:.4g} of them nothing "
+                             "resists a motion of {}; lower the loads, support it, or let a transient with damping "
+                             "find where it goes",
+                             title, found.reached, list_of(found.moving, system)));
     case StaticOutcome::not_settled:
       throw InvalidInput(
           where, fmt::format("{}no equilibrium was found: which sliders slip and which stops are closed did not settle",
@@ -87,10 +94,12 @@ RunReport run_static(const std::string& name, const Location& where, const model
                                     {results::ObservedColumns::Quantity::position});
   results::SliderColumns sliders(system);
   results::StopColumns stops(system);
+  results::LawColumns laws(system, false);
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   observed.add(layout);
   sliders.add(layout);
   stops.add(layout);
+  laws.add(layout);
   std::vector<std::string> forces, moments;
   std::vector<double> row{0.0}, last;
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -105,6 +114,7 @@ RunReport run_static(const std::string& name, const Location& where, const model
   observed.append(found.state, row);
   sliders.append(found.state, row);
   stops.append(found.state, row);
+  laws.append(found.state, row);
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!system.is_rotation(held[i].coordinate)) row.push_back(found.reaction[static_cast<Index>(i)]);
   row.insert(row.end(), last.begin(), last.end());

@@ -1,3 +1,4 @@
+#include <rubato/analysis/static_by_growth.hpp>
 #include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
@@ -329,6 +330,7 @@ class StaticSolver {
 }  // namespace
 
 StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held) {
+  if (system.law_count() > 0) return grow_equilibrium(system, held);
   return StaticSolver(system, held).solve();
 }
 

@@ -9,9 +9,10 @@ namespace rubato::analysis {
 
 enum class StaticOutcome {
   found,
-  mechanism,   ///< with all sliders stuck some motion meets no resistance
-  gives_way,   ///< the sliders that slip leave a motion without resistance: no equilibrium
-  not_settled  ///< the set of slipping sliders and closed stops did not settle
+  mechanism,             ///< with all sliders stuck some motion meets no resistance
+  gives_way,             ///< the sliders that slip leave a motion without resistance: no equilibrium
+  gives_way_on_the_way,  ///< loads that grow from zero lead no further than a share of them (with other laws)
+  not_settled            ///< the set of slipping sliders and closed stops did not settle
 };
 
 /// A state of equilibrium, and what was found on the way to it.
@@ -20,6 +21,7 @@ struct StaticEquilibrium {
   system::State state;        ///< t = 0, velocities of the system's start
   Vector reaction;            ///< on the held displacements, in their order [N] or [N m]
   std::vector<Index> moving;  ///< coordinates that move where the outcome is mechanism or gives_way
+  double reached = 1.0;       ///< share of the loads up to which there is an equilibrium
   int factorisations = 0;
 };
 
@@ -31,6 +33,7 @@ struct StaticEquilibrium {
 /// minimum of a convex energy, and so is q, unique where the stiffness with the sticking sliders is positive definite.
 /// Newton's iteration on the set of sticking sliders and closed stops, with a search along the energy; two refinements
 /// of the last solution. Loads are taken just before t = 0: a table that jumps there is released.
+/// Where there are other laws, see grow_equilibrium().
 /// @param held  coordinates with their values, each once
 StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held);
 

@@ -24,7 +24,8 @@ std::string missed_jumps(const integrate::LoadJumps& jumps) {
 
 std::string contact_name(Index contact, const system::LocallyNonlinear& system) {
   if (contact < 0) return "";
-  const Index stop = contact - system.slider_count();
+  const Index stop = contact - system.slider_count(), law = contact - system.first_law();
+  if (law >= 0) return system.laws()[static_cast<std::size_t>(law)].name;
   return stop < 0 ? system.sliders()[static_cast<std::size_t>(contact)].name
                   : system.stops()[static_cast<std::size_t>(stop)].name;
 }
@@ -44,7 +45,9 @@ std::string reason(const integrate::MarchReport& report, const TransientPlan& pl
       break;
     case integrate::StepOutcome::not_converged:
       what = fmt::format("the {} found no consistent state (worst: \"{}\")",
-                         system.stop_count() > 0 ? "sliders and stops" : "sliders",
+                         system.law_count() > 0    ? "laws"
+                         : system.stop_count() > 0 ? "sliders and stops"
+                                                   : "sliders",
                          contact_name(report.step.worst, system));
       remedy = "take a smaller step";
       break;

@@ -30,7 +30,7 @@ bool TransientObserver::accepted(const system::State& before, const system::Stat
   ++steps_;
   last_recorded_ = false;
   if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
-  if (ledger_) ledger_->add_step(before, after);
+  recorder_.book(before, after);
   const bool goes_on = !listener_ || listener_->accepted(before, after);
   if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
     record(after, after);

@@ -25,16 +25,24 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
   if (plan.step > 0.0) layout.attributes.emplace_back("step", fmt::format("{} s", plan.step));
   if (plan.automatic) layout.attributes.emplace_back("step", summary(*plan.automatic));
   layout.attributes.emplace_back("duration", fmt::format("{} s", plan.duration));
-  for (const auto& group : groups_) group->add(layout);
+  for (const auto& group : groups_) {
+    group->add(layout);
+    if (group->has_sums()) summing_.push_back(group.get());
+  }
   rows_ = sink.open(layout);
   if (ledger_) energy_rows_ = sink.open(energy_layout(name, *ledger_));
+}
+
+void TransientRecorder::book(const system::State& before, const system::State& after) {
+  if (ledger_) ledger_->add_step(before, after);
+  for (results::ColumnGroup* group : summing_) group->book(before, after);
 }
 
 void TransientRecorder::record(const system::State& before, const system::State& now, bool is_balanced) {
   shown_ = now;
   if (!is_balanced) balance_.find_shown_acceleration(shown_);
   row_.assign(1, now.t);
-  for (const auto& group : groups_) group->append(shown_, row_);
+  for (const auto& group : groups_) group->append_since(before, shown_, row_);
   rows_->append(row_);
   ++count_;
   if (!ledger_) return;

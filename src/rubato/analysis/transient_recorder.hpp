@@ -22,14 +22,17 @@ class TransientRecorder {
   TransientRecorder(const std::string& name, const TransientPlan& plan, results::ColumnGroups groups,
                     integrate::Balance& balance, integrate::EnergyLedger* ledger, results::Sink& sink);
 
+  /// Adds an accepted step to the ledger, and to the columns that show sums.
+  void book(const system::State& before, const system::State& after);
   /// Writes a row.
-  /// @param before  the last state booked by the ledger; may be `now`
+  /// @param before  the last state booked; may be `now`
   /// @param is_balanced  acceleration and multipliers of `now` are those to show: between the ends of a step
   void record(const system::State& before, const system::State& now, bool is_balanced = false);
   long rows() const { return count_; }
 
  private:
   results::ColumnGroups groups_;
+  std::vector<results::ColumnGroup*> summing_;
   integrate::Balance& balance_;
   integrate::EnergyLedger* ledger_;
   system::State shown_;

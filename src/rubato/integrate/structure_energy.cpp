@@ -1,3 +1,4 @@
+#include <rubato/integrate/law_energy.hpp>
 #include <rubato/integrate/structure_energy.hpp>
 
 namespace rubato::integrate {
@@ -125,6 +126,7 @@ void SupportEnergy::add_flow(const system::State& before, const system::State& a
 std::vector<std::unique_ptr<EnergyPart>> energy_parts(const system::LocallyNonlinear& system, Balance& balance) {
   std::vector<std::unique_ptr<EnergyPart>> parts;
   parts.push_back(std::make_unique<StructureEnergy>(system));
+  if (system.law_count() > 0) parts.push_back(std::make_unique<LawEnergy>(system));
   if (system.supports()) parts.push_back(std::make_unique<SupportEnergy>(system, balance));
   return parts;
 }

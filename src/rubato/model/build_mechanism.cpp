@@ -27,6 +27,9 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (!d.stops.empty())
     refuse(d.stops.front().where, "a [[stop]]",
            "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }");
+  if (!d.laws.empty())
+    refuse(d.laws.front().where, fmt::format("a [[{}]]", d.laws.front().kind),
+           "take a joint's own moment or force by a formula of its angle or displacement, its rate and t");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (!std::holds_alternative<std::monostate>(d.damping))
     refuse(where_of(d.damping), "[damping]",

@@ -4,6 +4,7 @@
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <cassert>
+#include <cmath>
 
 namespace rubato::system {
 namespace {
@@ -94,38 +95,46 @@ SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
   return SparseMatrix(matrix + added);
 }
 
-void LocallyNonlinear::add_law_slopes(double model::LawAnswer::*slope, std::vector<double>& coefficients) const {
-  for (Index j = 0; j < law_count(); ++j) {
-    const auto answer = parts_.laws[static_cast<std::size_t>(j)].law->at(law_point(j, parts_.start, model::Side::right),
-                                                                         parts_.start.memory.data() + memory_of(j));
-    coefficients[static_cast<std::size_t>(first_law() + j)] += answer.*slope;
-  }
+std::vector<double> LocallyNonlinear::law_slopes(double model::LawAnswer::*slope) const {
+  std::vector<double> coefficients(contacts_.size(), 0.0);
+  const Vector memory = Vector::Zero(memory_size_);
+  for (Index j = 0; j < law_count(); ++j)
+    coefficients[static_cast<std::size_t>(first_law() + j)] =
+        parts_.laws[static_cast<std::size_t>(j)].law->at({}, memory.data() + memory_of(j)).*slope;
+  return coefficients;
+}
+
+SparseMatrix LocallyNonlinear::free_stiffness() const {
+  return law_count() == 0 ? parts_.stiffness : with_contacts(parts_.stiffness, law_slopes(&model::LawAnswer::by_u));
+}
+
+SparseMatrix LocallyNonlinear::free_damping() const {
+  return law_count() == 0 ? parts_.damping : with_contacts(parts_.damping, law_slopes(&model::LawAnswer::by_rate));
 }
 
 SparseMatrix LocallyNonlinear::stuck_stiffness() const {
   std::vector<double> coefficients;
   for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
-  if (law_count() > 0) {
-    coefficients.resize(contacts_.size(), 0.0);
-    add_law_slopes(&model::LawAnswer::by_u, coefficients);
+  return with_contacts(free_stiffness(), coefficients);
+}
+
+SparseMatrix LocallyNonlinear::closed_stiffness() const {
+  std::vector<double> coefficients = law_slopes(&model::LawAnswer::by_u);
+  std::size_t i = 0;
+  for (const auto& slider : parts_.sliders) coefficients[i++] = slider.stiffness;
+  for (const auto& stop : parts_.stops) coefficients[i++] = stop.stiffness;
+  for (const auto& law : parts_.laws) {
+    const double largest = law.law->largest_stiffness();
+    if (std::isfinite(largest)) coefficients[i] = largest;
+    ++i;
   }
   return with_contacts(parts_.stiffness, coefficients);
 }
 
-SparseMatrix LocallyNonlinear::closed_stiffness() const {
-  std::vector<double> coefficients;
-  for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
-  for (const auto& stop : parts_.stops) coefficients.push_back(stop.stiffness);
-  coefficients.resize(contacts_.size(), 0.0);
-  add_law_slopes(&model::LawAnswer::by_u, coefficients);
-  return with_contacts(parts_.stiffness, coefficients);
-}
-
 SparseMatrix LocallyNonlinear::closed_damping() const {
-  std::vector<double> coefficients(parts_.sliders.size(), 0.0);
-  for (const auto& stop : parts_.stops) coefficients.push_back(stop.damping);
-  coefficients.resize(contacts_.size(), 0.0);
-  add_law_slopes(&model::LawAnswer::by_rate, coefficients);
+  std::vector<double> coefficients = law_slopes(&model::LawAnswer::by_rate);
+  std::size_t i = parts_.sliders.size();
+  for (const auto& stop : parts_.stops) coefficients[i++] = stop.damping;
   return with_contacts(parts_.damping, coefficients);
 }
 

@@ -110,16 +110,18 @@ class LocallyNonlinear final : public System {
   /// out += factor * B fc, of all contacts
   void add_slider_forces(const Vector& slider_force, double factor, Vector& out) const;
 
-  /// K plus kT of all sliders and the slopes of the laws at the start: the stiffness with the sliders stuck and the
-  /// stops open.
+  /// That K plus kT of all sliders: the stiffness with the sliders stuck and the stops open.
   SparseMatrix stuck_stiffness() const;
+  /// K and C with the slopes of the laws where nothing has moved yet, without sliders and stops.
+  SparseMatrix free_stiffness() const;
+  SparseMatrix free_damping() const;
   /// C and that K with all stops closed besides: what bounds the step of explicit methods.
   SparseMatrix closed_damping() const;
   SparseMatrix closed_stiffness() const;
 
  private:
-  /// Adds the slopes of the laws at the start to those of all contacts.
-  void add_law_slopes(double model::LawAnswer::*slope, std::vector<double>& coefficients) const;
+  /// The slopes of the laws where nothing has moved yet, as coefficients of all contacts; others are zero.
+  std::vector<double> law_slopes(double model::LawAnswer::*slope) const;
   SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
 
   Parts parts_;

@@ -79,6 +79,10 @@ void plan_objective(DamperCurvePlan& plan, const Description& description, const
     throw InvalidInput(where, fmt::format("{}a damper curve knows sliders, and the model has the stop \"{}\"; take a "
                                           "frequency_response with solver = \"time_marching\" and a sweep",
                                           title, input.system.stops().front().name));
+  if (input.system.law_count() > 0)
+    throw InvalidInput(where, fmt::format("{}a damper curve knows sliders, and the model has the law \"{}\"; take "
+                                          "transients",
+                                          title, input.system.laws().front().name));
   plan.objective = description.objective;
   if (plan.objective == Description::Objective::dissipated && input.system.slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),

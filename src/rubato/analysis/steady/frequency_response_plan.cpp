@@ -97,6 +97,11 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
                     "\"time_marching\"",
                     title, description.route == Description::Route::periodic ? "periodic" : "harmonic_balance",
                     input.system.stops().front().name));
+  if (input.system.law_count() > 0)
+    throw InvalidInput(place(description.route_where, where),
+                       fmt::format("{}a frequency response knows sliders and stops, and the model has the law \"{}\"; "
+                                   "take a transient that is long enough",
+                                   title, input.system.laws().front().name));
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");

@@ -1,0 +1,28 @@
+#include <rubato/integrate/law_energy.hpp>
+
+namespace rubato::integrate {
+
+double dissipated_by_law(const system::LocallyNonlinear& system, Index law, const system::State& before,
+                         const system::State& after) {
+  const Index memory = system.memory_of(law);
+  return system.laws()[static_cast<std::size_t>(law)].law->dissipated(
+      system.law_point(law, before, model::Side::right), before.memory.data() + memory,
+      system.law_point(law, after, model::Side::left), after.memory.data() + memory);
+}
+
+std::vector<Account> LawEnergy::accounts() const {
+  return {{Account::Kind::stored, "law_stored", "elastic energy of the laws"},
+          {Account::Kind::dissipated, "law_dissipated", "dissipated by the laws since the start"}};
+}
+
+void LawEnergy::add_stored(const system::State& state, Entries row) {
+  for (Index j = 0; j < system_.law_count(); ++j)
+    row[0] += system_.laws()[static_cast<std::size_t>(j)].law->stored_energy(
+        system_.relative_displacement(system_.first_law() + j, state.q), state.memory.data() + system_.memory_of(j));
+}
+
+void LawEnergy::add_flow(const system::State& before, const system::State& after, Entries row) {
+  for (Index j = 0; j < system_.law_count(); ++j) row[1] += dissipated_by_law(system_, j, before, after);
+}
+
+}  // namespace rubato::integrate

@@ -1,0 +1,53 @@
+#include <rubato/integrate/law_energy.hpp>
+#include <rubato/results/columns/law_columns.hpp>
+
+namespace rubato::results {
+
+LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
+    : system_(system), in_motion_(in_motion), dissipated_(Vector::Zero(system.law_count())) {
+  for (Index j = 0; j < system.law_count(); ++j) {
+    const auto& law = system.laws()[static_cast<std::size_t>(j)];
+    const Index end = law.first == ground ? law.second : law.first;
+    (system.is_rotation(end) ? of_rotations_ : of_displacements_).push_back(j);
+  }
+}
+
+void LawColumns::add(TableLayout& layout) const {
+  const auto add_kind = [&](const std::vector<Index>& laws, bool is_rotation) {
+    if (laws.empty()) return;
+    std::vector<std::string> labels;
+    for (const Index j : laws) labels.push_back(system_.laws()[static_cast<std::size_t>(j)].name);
+    const char* dimension = is_rotation ? "rotational_law" : "law";
+    if (is_rotation) {
+      layout.blocks.push_back(
+          {"moment", "N m", "moment of a law; -moment acts on the first coordinate", dimension, labels});
+      layout.blocks.push_back({"angle", "rad", "u of a law, first - second", dimension, labels});
+    } else {
+      layout.blocks.push_back({"force", "N", "force of a law; -force acts on the first coordinate", dimension, labels});
+      layout.blocks.push_back({"displacement", "m", "u of a law, first - second", dimension, labels});
+    }
+    if (in_motion_)
+      layout.blocks.push_back({"dissipated", "J", "dissipated by a law since the start", dimension, labels});
+  };
+  add_kind(of_displacements_, false);
+  add_kind(of_rotations_, true);
+}
+
+void LawColumns::book(const system::State& before, const system::State& after) {
+  for (Index j = 0; j < dissipated_.size(); ++j)
+    dissipated_[j] += integrate::dissipated_by_law(system_, j, before, after);
+}
+
+void LawColumns::append_since(const system::State& before, const system::State& state, std::vector<double>& row) {
+  const Index first = system_.first_law();
+  for (const auto* laws : {&of_displacements_, &of_rotations_}) {
+    for (const Index j : *laws) row.push_back(state.slider_force[first + j]);
+    for (const Index j : *laws) row.push_back(system_.relative_displacement(first + j, state.q));
+    if (!in_motion_) continue;
+    for (const Index j : *laws)
+      row.push_back(dissipated_[j] +
+                    (before.t == state.t ? 0.0 : integrate::dissipated_by_law(system_, j, before, state)));
+  }
+}
+
+}  // namespace rubato::results

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <rubato/results/columns/column_group.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <vector>
+
+namespace rubato::results {
+
+/// Columns of the laws beside sliders and stops: `force` and `displacement`, of those between rotations `moment` and
+/// `angle`; in a motion `dissipated` since its start as well.
+class LawColumns final : public ColumnGroup {
+ public:
+  /// @param in_motion  whether steps are booked
+  LawColumns(const system::LocallyNonlinear& system, bool in_motion);
+
+  void add(TableLayout& layout) const override;
+  bool has_sums() const override { return in_motion_ && system_.law_count() > 0; }
+  void book(const system::State& before, const system::State& after) override;
+  void append(const system::State& state, std::vector<double>& row) override { append_since(state, state, row); }
+  void append_since(const system::State& before, const system::State& state, std::vector<double>& row) override;
+
+ private:
+  const system::LocallyNonlinear& system_;
+  bool in_motion_;
+  std::vector<Index> of_displacements_, of_rotations_;
+  Vector dissipated_;  // by each law in the steps that are booked [J]
+};
+
+}  // namespace rubato::results
