@@ -36,6 +36,7 @@ PICTURES = {
                      "runge-kutta": "Stability regions", "newmark": "Stability of Newmark",
                      "responses": "response beside"},
     "building": {"motion": MOTION},
+    "isolated-building": {"loop": "Hysteresis loop of bearings"},
     "two-supports": {"motion": MOTION},
     "late-stop": {"motion": MOTION},
     "frame": {"motion": MOTION},

@@ -86,7 +86,7 @@ function joint_tables(table, {rotations, sliding, efforts}) {
   return tables;
 }
 
-function write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, joints = null}) {
+function write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, laws = [], joints = null}) {
   if (!table.key_numbers) return;
   const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
     "last tenth of the duration. All rows count.";
@@ -95,5 +95,9 @@ function write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, 
   if (rotations.length) numbers.push(key_numbers(table, rotations, `Rotations of the nodes${joints ? " and joints" : ""}.${meaning}`));
   if (sliders.length) numbers.push(key_numbers(table, sliders, `Motion and force of the sliders.${meaning}`));
   if (hinges.length) numbers.push(key_numbers(table, hinges, `Moment and slip of the sliders between rotations.${meaning}`));
+  for (const dimension of ["law", "rotational_law"]) {
+    const seen = laws.filter((variable) => variable.dimension === dimension);
+    if (seen.length) numbers.push(key_numbers(table, seen, `Force, displacement and dissipation of the laws.${meaning}`));
+  }
   if (numbers.length) add_section(chapter, "Key numbers", numbers);
 }

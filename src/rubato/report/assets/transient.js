@@ -109,18 +109,25 @@ function limit_lines(table, force, label, values) {
            line: {color: "#6c7680", width: 1, dash: "dash"}, hoverinfo: "name", showlegend: true}];
 }
 
-function hysteresis_loops(table, force) {
+/** What a law sees, first less second. */
+function law_displacement(table, force, label) {
+  const seen = table.variables.map((variable, index) => ({...variable, index}))
+    .find((variable) => variable.dimension === force.dimension && ["displacement", "angle"].includes(variable.name));
+  return {title: axis_label(seen), values: columns_of(table, 1)[seen.index][label]};
+}
+
+function hysteresis_loops(table, force, displacement_of = relative_displacement, parts = "sliders") {
   const most = 12;
   const columns = columns_of(table, 1);
   const shown = Math.min(most, columns[force.index].length);
   return element("div", {class: "pair"}, columns[force.index].slice(0, shown).map((y, label) => {
-    const displacement = relative_displacement(table, force, label);
+    const displacement = displacement_of(table, force, label);
     const rest = label === 0 && force.label_count > shown
-      ? ` The first ${shown} of ${count_text(force.label_count)} sliders have a figure.` : "";
+      ? ` The first ${shown} of ${count_text(force.label_count)} ${parts} have a figure.` : "";
     return make_figure({
       caption: `Hysteresis loop of ${force.labels[label]}. ${window_text(table)}${rest}`, height: 320, is_small: true,
       draw: () => ({
-        traces: [...limit_lines(table, force, label, displacement.values), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
+        traces: [...(parts === "sliders" ? limit_lines(table, force, label, displacement.values) : []), {type: "scatter", mode: "lines", x: displacement.values, y, name: plot_text(force.labels[label]),
                   line: {...line_style(label), dash: "solid"}, showlegend: true}],
         layout: {xaxis: axis(displacement.title, {range: padded_range([displacement.values])}),
                  yaxis: axis(axis_label(force), {range: padded_range([y])})},
@@ -131,9 +138,9 @@ function hysteresis_loops(table, force) {
 
 // Which panel each entry of the ledger stands in: what accumulates, what goes to and fro, what is left.
 const ledger_panels = [
-  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "lock_dissipated",
+  {title: "Cumulative [J]", names: ["load_work", "damper_dissipated", "slider_dissipated", "stop_dissipated", "law_dissipated", "lock_dissipated",
     "friction_dissipated", "drive_work"], domain: [0.60, 1.0]},
-  {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored"], domain: [0.24, 0.54]},
+  {title: "Stored [J]", names: ["kinetic", "strain", "slider_stored", "stop_stored", "law_stored"], domain: [0.24, 0.54]},
   {title: "Residue [J]", names: ["residue"], domain: [0.0, 0.18]},
 ];
 
@@ -174,12 +181,13 @@ function is_transient(analysis) {
 function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
   const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
+  const is_of_laws = (variable) => ["law", "rotational_law"].includes(variable.dimension);
   const is_of_joints = (variable) => variable.dimension.endsWith("joint");
   const of = (names) => names.map((name) => variable_of(table, name))
-    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable) && !is_of_joints(variable));
+    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable) && !is_of_laws(variable) && !is_of_joints(variable));
   const those = (belongs) => table.variables.map((variable, index) => ({...variable, index}))
     .filter((variable) => variable.labels.length && belongs(variable));
-  const stops = those(is_of_stops), joints = those(is_of_joints);
+  const stops = those(is_of_stops), laws = those(is_of_laws), joints = those(is_of_joints);
   const is_reaction = (variable) => variable.name.startsWith("reaction_");
   const sliding = joints.filter((variable) => variable.dimension === "sliding_joint");
   const reactions = joints.filter(is_reaction);
@@ -194,7 +202,7 @@ function write_transient(chapter, analysis) {
   }
   const is_mechanism = joints.length > 0;
   if (is_mechanism) {
-    write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, joints: {rotations, sliding, efforts}});
+    write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, laws, joints: {rotations, sliding, efforts}});
   }
   if (motion.length) {
     add_section(chapter, "Time histories", history_figure(table, motion, "Motion of the coordinates"));
@@ -221,10 +229,17 @@ function write_transient(chapter, analysis) {
   const supports = of(["reaction", "reaction_moment"]);
   if (supports.length) add_section(chapter, "Moving supports", history_figure(table, supports, "Forces that move the supports"));
   if (stops.length) add_section(chapter, "Stops", history_figure(table, stops, "Stops: force and penetration"));
+  if (laws.length) {
+    add_section(chapter, "Laws", history_figure(table, laws, "Laws: force, displacement and what they dissipated"));
+    for (const force of laws.filter((variable) => ["force", "moment"].includes(variable.name))) {
+      add_section(chapter, force.name === "force" ? "Forces over displacements" : "Moments over angles",
+                  hysteresis_loops(table, force, law_displacement, "laws"));
+    }
+  }
   if (hinges.length === 2) {
     add_section(chapter, "Rotational sliders", history_figure(table, hinges, "Sliders between rotations: moment and slip"));
     add_section(chapter, "Moments over rotations", hysteresis_loops(table, hinges[0]));
   }
   if (ledger && ledger.rows) add_section(chapter, "Energy ledger", energy_ledger(ledger));
-  if (!is_mechanism) write_key_numbers(chapter, table, {motion, rotations, sliders, hinges});
+  if (!is_mechanism) write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, laws});
 }
