@@ -3,7 +3,8 @@
 #include <rubato/model/description.hpp>
 #include <rubato/model/fields/key.hpp>
 
-// The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops and other laws; and of [damping].
+// The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops and other laws; and of
+// [damping].
 namespace rubato::model {
 
 void fields(auto& visit, Like<CoordinateDescription> auto& coordinate) {
