@@ -143,7 +143,9 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
   EXPECT_EQ(
       verdict_with("title", "titel"),
       "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
-      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, force, distributed_force, "
+      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "force, "
+      "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
       "joint, analysis)");
 }
@@ -164,7 +166,9 @@ TEST(KeyError, NamesAnUnknownTable) {
   EXPECT_EQ(
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
-      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, force, distributed_force, "
+      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "force, "
+      "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
       "joint, analysis)");
 }

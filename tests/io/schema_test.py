@@ -225,13 +225,17 @@ class Schema(unittest.TestCase):
             for operation, words in re.findall(fields, text):
                 asked |= set(re.findall(r"\w+", words)) if operation != "title" else set()
             asked |= {word for pair in re.findall(either, text) for word in pair}
+        # Laws name their table, and their keys with a type.
+        law = r'LawKind \w+\(\) \{.*?return \{\s*"(\w+)"|\{"(\w+)", (?:LawKey::)?Type::'
+        for source in (root / "src" / "rubato" / "model" / "laws").glob("*.cpp"):
+            asked |= {word for pair in re.findall(law, source.read_text(), re.DOTALL) for word in pair if word}
         known = keys_of(schema)
         # A method's own parameters are read by whatever name they have and judged by the catalogue.
         methods = set(subprocess.run([rubato, "methods", "newmark"], check=True, capture_output=True,
                                      text=True).stdout.split())
         self.assertLessEqual({"beta", "gamma"}, methods)
-        known -= {"alpha", "beta", "gamma", "rho_inf", "theta"}
-        self.assertEqual(asked, known)
+        by_name = {"alpha", "beta", "gamma", "rho_inf", "theta"}
+        self.assertEqual(asked - by_name, known - by_name)
 
     def test_lists_the_methods_of_the_catalogue(self):
         lines = subprocess.run([rubato, "methods"], check=True, capture_output=True, text=True).stdout.split("\n\n")[0]
