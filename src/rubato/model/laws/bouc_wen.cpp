@@ -28,31 +28,34 @@ class PowerFlow {
   }
 
   /// y after a length x of the motion dy/dx = -(1 - sign y^n), in which it falls; below zero where it would pass it,
-  /// `left` of the length then being what is left of x.
+  /// `left` of the length then being what is left of x, and at most 0 elsewhere.
   double fall(double y0, double x, double sign, double& left) const {
-    left = 0.0;
+    left = -1.0;
+    // Most steps stay on their side of zero, which the rate at their start shows.
+    const bool stays = x * (sign > 0.0 ? 1.0 : 1.0 - sign * power(y0)) < y0;
     if (sign == 0.0) {
       left = x - y0;
       return y0 - x;
     }
     if (n_ == 1.0) {
-      const double down = sign > 0.0 ? -std::log1p(-y0) : std::log1p(y0);
-      left = x - down;
-      return sign > 0.0 ? 1.0 - (1.0 - y0) * std::exp(x) : (1.0 + y0) * std::exp(-x) - 1.0;
+      if (!stays) left = x - (sign > 0.0 ? -std::log1p(-y0) : std::log1p(y0));
+      return sign > 0.0 ? y0 - (1.0 - y0) * std::expm1(x) : y0 + (1.0 + y0) * std::expm1(-x);
     }
     if (n_ == 2.0) {
-      const double down = sign > 0.0 ? std::atanh(y0) : std::atan(y0);
-      left = x - down;
+      if (!stays) left = x - (sign > 0.0 ? std::atanh(y0) : std::atan(y0));
       if (left > 0.0) return -1.0;
       const double t = sign > 0.0 ? std::tanh(x) : std::tan(x);
       return (y0 - t) / (1.0 - sign * y0 * t);
     }
-    left = x - time_between(0.0, y0, sign);
+    if (!stays) left = x - time_between(0.0, y0, sign);
     return left > 0.0 ? -1.0 : at_time(y0, -x, sign);
   }
 
+  /// y^n
+  double power(double y) const { return n_ == 1.0 ? y : n_ == 2.0 ? y * y : std::pow(y, n_); }
+
  private:
-  double rate(double y, double sign) const { return 1.0 - sign * std::pow(y, n_); }
+  double rate(double y, double sign) const { return 1.0 - sign * power(y); }
 
   /// The length from `from` to `to`, the integral of dy / (1 - sign y^n).
   double time_between(double from, double to, double sign) const {
@@ -91,11 +94,36 @@ class PowerFlow {
     return sum;
   }
 
+  /// The same by the Taylor series of y about its start, where that has come to its end within its terms: in steps of
+  /// time, which move y by a small part of it. The coefficients w of y^n follow from those of y (Knuth 1997, section
+  /// 4.7).
+  bool by_taylor(double y0, double x, double sign, double& y) const {
+    constexpr int degree = 14;
+    if (!(std::abs(x) < 0.2 * y0)) return false;
+    double c[degree + 1], w[degree];  // of y and of y^n, each with its power of x
+    c[0] = y0;
+    w[0] = power(y0);
+    c[1] = x * (1.0 - sign * w[0]);
+    y = c[0] + c[1];
+    for (int k = 1; k < degree; ++k) {
+      double sum = 0.0;
+      for (int j = 1; j <= k; ++j) sum += (n_ * j - (k - j)) * c[j] * w[k - j];
+      w[k] = sum / (k * y0);
+      c[k + 1] = -sign * x * w[k] / (k + 1);
+      y += c[k + 1];
+      constexpr double nothing = 0.1 * std::numeric_limits<double>::epsilon();
+      if (std::abs(c[k + 1]) <= nothing * y0 && std::abs(c[k]) <= 10.0 * nothing * y0) return y >= 0.0;
+    }
+    return false;
+  }
+
   /// The y at which the length from y0 is x, of either sign: Newton's method on time_between(), within bounds.
   double at_time(double y0, double x, double sign) const {
     constexpr double endless = 40.0;  // within which y comes as near to 1 as round-off tells
     if (x == 0.0) return y0;
     if (x > endless) return 1.0;
+    double near = 0.0;
+    if (by_taylor(y0, x, sign, near)) return near;
     double low = x > 0.0 ? y0 : 0.0, high = x > 0.0 ? 1.0 : y0, y = y0, time = 0.0;  // the length from y0 to y
     for (int i = 0; i < 100; ++i) {
       double next = y + (x - time) * rate(y, sign);
@@ -123,7 +151,9 @@ class BoucWen final : public Law {
         beta_(beta),
         gamma_(gamma),
         n_(n),
-        flow_(n) {}
+        flow_(n),
+        together_{gamma + beta, a, n},
+        apart_{gamma - beta, a, n} {}
 
   Index memory_size() const override { return 1; }
 
@@ -181,30 +211,38 @@ class BoucWen final : public Law {
     const double direction = travel > 0.0 ? 1.0 : -1.0;
     double w = direction * z, left = std::abs(travel);
     if (w < 0.0) {
-      const double c = gamma_ - beta_, limit = limit_of(c);
       double beyond = 0.0;
-      const double y = -w / limit, fallen = flow_.fall(y, a_ * left / limit, sign_of(c), beyond);
+      const double y = flow_.fall(-w / apart_.limit, a_ * left / apart_.limit, apart_.sign, beyond);
       if (beyond <= 0.0) {
-        w = -limit * std::max(fallen, 0.0);
-        slope = a_ - c * std::pow(std::abs(w), n_);
-        return direction * w;
+        slope = a_ * (1.0 - apart_.sign * flow_.power(std::max(y, 0.0)));
+        return -direction * apart_.limit * std::max(y, 0.0);
       }
       w = 0.0;
-      left = beyond * limit / a_;
+      left = beyond * apart_.limit / a_;
     }
-    const double c = gamma_ + beta_, limit = limit_of(c), y = c > 0.0 ? std::min(w / limit, 1.0) : w / limit;
-    w = limit * flow_.grow(y, a_ * left / limit, sign_of(c));
-    slope = a_ - c * std::pow(w, n_);
-    return direction * w;
+    double y = w / together_.limit;
+    if (together_.sign > 0.0) y = std::min(y, 1.0);
+    y = flow_.grow(y, a_ * left / together_.limit, together_.sign);
+    slope = a_ * (1.0 - together_.sign * flow_.power(y));
+    return direction * together_.limit * y;
   }
 
-  static double sign_of(double c) { return c > 0.0 ? 1.0 : c < 0.0 ? -1.0 : 0.0; }
-  /// That of |z|, where c > 0; a scale of it elsewhere [m].
-  double limit_of(double c) const { return c == 0.0 ? 1.0 : std::pow(a_ / std::abs(c), 1.0 / n_); }
+  /// dw/dx = A - c |w|^n over its scale.
+  struct Branch {
+    double limit = 1.0;  ///< of |z|, where c > 0; elsewhere a scale of it [m]
+    double sign = 0.0;   ///< of c
+
+    Branch(double c, double a, double n)
+        : limit(c == 0.0 ? 1.0 : std::pow(a / std::abs(c), 1.0 / n)),
+          sign(c > 0.0   ? 1.0
+               : c < 0.0 ? -1.0
+                         : 0.0) {}
+  };
 
   double elastic_, hysteretic_;  // alpha k, (1 - alpha) k [N/m]
   double a_, beta_, gamma_, n_;
   PowerFlow flow_;
+  Branch together_, apart_;  // z and the motion in the same direction, and in opposite ones
 };
 
 std::shared_ptr<const Law> make(const LawDescription& description, const numerics::Parameters& parameters,
