@@ -39,10 +39,9 @@ def frequency_response(study, model, analysis, table, pairs):
                 checks.append((f"row {i} unbounded, but the matrix is not singular", 1e12 / condition, 1.0))
             continue
         if now.laws:
-            motion, fundamental, allowed, more = _with_laws(analysis, now, table, i, solver, asked)
-            checks += more
-            waves, offsets = [(motion["q"], motion["v"])], any(
-                abs(work) == 0.0 for work in motion["slid"])
+            motion, fundamental, allowed, offsets = _with_laws(analysis, now, table, i, solver, asked)
+            checks += judge_laws.response(now, table, i, motion, 10 * allowed)
+            waves = [(motion["q"], motion["v"])]
         elif now.sliders or now.stops:
             if analysis.get("start", "unloaded") != "unloaded" and steady.sticks(now):
                 continue
@@ -123,7 +122,8 @@ def frequency_response(study, model, analysis, table, pairs):
 
 
 def _with_laws(analysis, now, table, i, solver, asked):
-    """The motion that repeats and is the row's: what a march from rest leads to, or else the one next to the row."""
+    """The motion that repeats and is the row's, what a march from rest leads to, or else the one next to the row; the fundamental; what
+    the row may differ by; and whether elements that hardly yield, or sliders that stick, hold a mean that hardly fades."""
     allowed = 4 * asked
     row_size = _size_of_row(analysis, now, table, i)
     found, why = [], None
@@ -144,7 +144,7 @@ def _with_laws(analysis, now, table, i, solver, asked):
     if not found:
         raise why
     orbit, shot = min(found, key=lambda o: abs(_size(analysis, now, o[0]) - row_size))
-    return orbit, shot.fundamental, allowed, judge_laws.response(now, table, i, orbit, 10 * allowed)
+    return orbit, shot.fundamental, allowed, numpy.max(numpy.abs(numpy.linalg.eigvals(shot.derivative))) > 0.98
 
 
 def _apart(motion, other):
