@@ -37,11 +37,13 @@ def transient(model, table, rows, got, pick, times, allowed, observed_all, ends)
     """`got`: q, v as told; `allowed`: of positions, over the largest; `ends`: whether rows stand at the ends of steps."""
     checks = []
     exact = 1e-9 if ends else 2 * allowed + 1e-9
+    nothing = 1e-9 * numpy.max(numpy.abs(rows["q"])), 1e-9 * max(numpy.max(numpy.abs(rows["law_force"])), numpy.max(
+        numpy.abs(rows["q"] @ model.K)))
     if allowed >= 1:
         return checks
     for i, law in enumerate(model.laws):
         u = rows["law_displacement"][:, i]
-        size_u = max(numpy.max(numpy.abs(u)), 1e-3 * numpy.max(numpy.abs(rows["q"]) @ numpy.abs(law.b)), 1e-300)
+        size_u = max(numpy.max(numpy.abs(u)), 1e-3 * numpy.max(numpy.abs(rows["q"]) @ numpy.abs(law.b)), nothing[0], 1e-300)
         header, told_u = _column(table, law, DISPLACEMENTS, checks)
         if header is None:
             continue
@@ -56,7 +58,7 @@ def transient(model, table, rows, got, pick, times, allowed, observed_all, ends)
             continue
         told_f = told_f[pick]
         f = rows["law_force"][:, i]
-        size_f = max(numpy.max(numpy.abs(f)), 1e-300)
+        size_f = max(numpy.max(numpy.abs(f)), nothing[1], 1e-300)
         if law.remembers:
             checks.append((header, numpy.max(numpy.abs(told_f - f)) / max(size_f, law.k * min(size_u, law.z_max)), 5 * allowed * max(1.0, share)))
         elif observed_all:

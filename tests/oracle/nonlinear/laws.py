@@ -104,8 +104,8 @@ class NonlinearSpring:
         return self.formula.decisions(u=float(u), rate=float(rate), t=float(t))
 
     def elastic_force(self, u):
-        """What is left at rest at t = 0."""
-        return float(self.formula(u=float(u), rate=0.0, t=0.0))
+        """What is left at rest; nothing of a formula that contains t."""
+        return 0.0 if "t" in self.used else float(self.formula(u=float(u), rate=0.0, t=0.0))
 
     def stored(self, u, z=None):
         """The work of the elastic force from 0 to u."""

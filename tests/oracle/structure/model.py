@@ -73,10 +73,10 @@ class Model:
         return stiffness
 
     def tangents(self):
-        """Stiffness and damping without sliders; laws by their tangents at the start, at rest."""
+        """Stiffness and damping without sliders; laws by their tangents where nothing has moved, at rest at t = 0."""
         stiffness, damping = self.K.copy(), self.C.copy()
         for law in self.laws:
-            k, c = law.tangents(law.b @ self.q0)
+            k, c = law.tangents()
             stiffness += k * numpy.outer(law.b, law.b)
             damping += c * numpy.outer(law.b, law.b)
         return stiffness, damping
