@@ -78,20 +78,19 @@ void require_name(const std::string& name, const std::vector<AnalysisDescription
 
 }  // namespace
 
-std::vector<AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder) {
+std::vector<AnalysisDescription> read_analyses(TomlReader& root, const std::string& key, const StudyFolder& folder) {
   std::vector<std::string> known;
   analysis_types([&]<class Task>(const char* type, const char*) { known.emplace_back(type); });
   std::vector<AnalysisDescription> analyses;
-  for (TomlReader& reader : root.tables("analysis")) {
+  for (TomlReader& reader : root.tables(key)) {
     AnalysisDescription analysis;
-    analysis.where = reader.where();
-    analysis.name = reader.text("name");
-    reader.rename(fmt::format("analysis \"{}\"", analysis.name));
+    ReadingVisitor visitor(reader, folder);
+    name_field(visitor, analysis);
     require_name(analysis.name, analyses, reader.where("name"));
     const std::string type = reader.text("type");
     (void)reader.optional_word("type", known);
     analysis_types([&]<class Task>(const char* one, const char*) {
-      if (one == type) ReadingVisitor(reader, folder).read(analysis.task.emplace<Task>());
+      if (one == type) visitor.read(analysis.task.emplace<Task>());
     });
     analyses.push_back(std::move(analysis));
   }

@@ -9,8 +9,8 @@
 // The parts of a study file, each in a file of its own. Private to io.
 namespace rubato::io {
 
-/// [parameters], [[coordinate]] ... [base_motion]: everything but the analyses.
-model::ModelDescription read_model(TomlReader& root, const StudyFolder& folder);
+/// [parameters]
+std::vector<model::ParameterDescription> read_parameters(TomlReader& root, const std::string& key);
 
 /// The rows of the CSV files that [nodes] and [beams] name, added to those of the study.
 void read_mesh(const model::NodeFileDescription& nodes, const StudyFolder& folder,
@@ -19,7 +19,8 @@ void read_mesh(const model::BeamFileDescription& beams, const StudyFolder& folde
                model::StructureDescription& structure);
 
 /// [[analysis]]
-std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const StudyFolder& folder);
+std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::string& key,
+                                                      const StudyFolder& folder);
 
 /// A list of numbers, or { from, to, points, spacing }.
 model::ValuesDescription to_values(TomlReader& reader, const toml::node& node, const std::string& key,

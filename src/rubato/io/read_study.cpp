@@ -1,7 +1,8 @@
 #include <rubato/core/excerpt.hpp>
-#include <rubato/io/read_parts.hpp>
 #include <rubato/io/read_study.hpp>
+#include <rubato/io/reading_visitor.hpp>
 #include <rubato/io/toml_limits.hpp>
+#include <rubato/model/fields/study_fields.hpp>
 
 #include <fmt/format.h>
 
@@ -81,9 +82,18 @@ void name_by_number(model::StudyDescription& study) {
   for (auto& analysis : study.analyses) std::visit(name_all, analysis.task);
 }
 
-std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {
+/// What stands in place of tables that users look for.
+void note_elsewhere(TomlReader& root) {
+  for (const auto& type : model::joint_types())
+    root.note_elsewhere(type.word, fmt::format("write [[joint]] with type = \"{}\"", type.word));
+  root.note_elsewhere("hinge", "write [[joint]] with type = \"revolute\"");
+}
+
+}  // namespace
+
+std::vector<model::ParameterDescription> read_parameters(TomlReader& root, const std::string& key) {
   std::vector<model::ParameterDescription> parameters;
-  const auto values = root.optional_quantities_by_name("parameters");
+  const auto values = root.optional_quantities_by_name(key);
   if (!values) return parameters;
   for (const auto& [name, value] : *values) {
     if (name == "t" || name == "pi")
@@ -106,8 +116,6 @@ std::vector<model::ParameterDescription> read_parameters(TomlReader& root) {
   });
   return parameters;
 }
-
-}  // namespace
 
 void refuse_binary(const std::string& text, const std::string& file, const std::string& expected) {
   const std::size_t zero = text.find('\0');
@@ -158,11 +166,9 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   model::StudyDescription study;
   study.file = name;
   study.text = text;
-  study.title = root.optional_text("title").value_or(std::filesystem::path(name).stem().string());
-  study.parameters = read_parameters(root);
-  study.model = read_model(root, folder);
-  study.analyses = read_analyses(root, folder);
-  root.finish();
+  note_elsewhere(root);
+  ReadingVisitor(root, folder).read(study);
+  if (!root.has("title")) study.title = std::filesystem::path(name).stem().string();
   name_by_number(study);
   return study;
 }

@@ -231,6 +231,12 @@ class ReadingVisitor {
   void values(const char* key, model::ValuesDescription& to, const Key&);
   void frequencies(model::ValuesDescription& to, bool& in_hertz, const Key&, const Key&);
   void frequency_range(model::ValuesDescription& to, bool& in_hertz, bool& has_points, const Key&, const Key&);
+  void parameters(const char* key, std::vector<model::ParameterDescription>& to, const Key&) {
+    to = read_parameters(reader_, key);
+  }
+  void analyses(const char* key, std::vector<model::AnalysisDescription>& to, const Key&) {
+    to = read_analyses(reader_, key, folder_);
+  }
   void sweep(const char* key, model::SweepDescription& to, const Key&);
   void distributions(const char* key, std::vector<model::DistributionDescription>& to, const Key&);
 

@@ -1,7 +1,7 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/io/schema.hpp>
 #include <rubato/io/schema_visitor.hpp>
-#include <rubato/model/fields/analysis_fields.hpp>
+#include <rubato/model/fields/study_fields.hpp>
 #include <rubato/model/fields/sweep_fields.hpp>
 
 #include <fmt/format.h>
@@ -68,41 +68,6 @@ Json definitions() {
        {"sweep", sweep_schema()}});
 }
 
-Json analyses_schema() {
-  Json types = Json::array();
-  analysis_types([&]<class Task>(const char* type, const char* says) {
-    SchemaVisitor analysis;
-    Json name = Json::object({{"type", Json::text("string")}, {"minLength", Json::number(1)}});
-    name.set("pattern", Json::raw(R"("^[^/\\\\.\\u0000-\\u001f\\u007f]+$")"));
-    name.set("not", Json::object({{"const", Json::text("results")}}));
-    analysis.property("name", name, {.required = true, .says = "names the files of results"});
-    analysis.property("type", Json::object({{"const", Json::text(type)}}), {.required = true, .says = says});
-    Task task;
-    fields(analysis, task);
-    types.add(analysis.schema());
-  });
-  return SchemaVisitor::list(Json::object({{"oneOf", types}}), {1});
-}
-
-Json parameters_schema() {
-  return Json::object(
-      {{"type", Json::text("object")},
-       {"propertyNames", Json::raw(R"({"pattern": "^[A-Za-z_][A-Za-z0-9_]*$", "not": {"enum": ["t", "pi"]}})")},
-       {"additionalProperties", SchemaVisitor::reference("quantity")}});
-}
-
-SchemaVisitor study_visitor() {
-  SchemaVisitor study;
-  study.property("title", Json::object({{"type", Json::text("string")}}),
-                 {.says = "heads the report", .unless = "the name of the file"});
-  study.property("parameters", parameters_schema(), {.says = "numbers that expressions use and --set replaces"});
-  ModelDescription model;
-  fields(study, model);
-  study.property("analysis", analyses_schema(),
-                 {.required = true, .says = "what to run on the model; each has a CSV file of its name"});
-  return study;
-}
-
 }  // namespace
 
 std::string study_schema() {
@@ -112,14 +77,14 @@ std::string study_schema() {
                     {"description",
                      Json::text("A model, its parameters, and the analyses to run on it. SI units. Every number may be "
                                 "an expression in quotes.")}});
-  const Json study = study_visitor().schema();
+  const Json study = SchemaVisitor::of<StudyDescription>().schema();
   for (std::size_t i = 0; i < study.names().size(); ++i) schema.set(study.names()[i], study.values()[i]);
   schema.set("$defs", definitions());
   return schema.written() + "\n";
 }
 
 const std::vector<std::string>& study_keys() {
-  static const std::vector<std::string> keys = study_visitor().keys();
+  static const std::vector<std::string> keys = keys_of<StudyDescription>();
   return keys;
 }
 

@@ -1,4 +1,5 @@
 #include <rubato/io/schema_visitor.hpp>
+#include <rubato/model/fields/analysis_fields.hpp>
 #include <rubato/model/fields/sweep_fields.hpp>
 
 #include <fmt/format.h>
@@ -77,6 +78,28 @@ void SchemaVisitor::distributions(const char* key, const std::vector<model::Dist
                          {"minProperties", Json::number(1)},
                          {"additionalProperties", of<model::DistributionDescription>().schema()}}),
            about);
+}
+
+void SchemaVisitor::parameters(const char* key, const std::vector<model::ParameterDescription>&, const Key& about) {
+  const char* names = R"({"pattern": "^[A-Za-z_][A-Za-z0-9_]*$", "not": {"enum": ["t", "pi"]}})";
+  property(key,
+           Json::object({{"type", Json::text("object")},
+                         {"propertyNames", Json::raw(names)},
+                         {"additionalProperties", reference("quantity")}}),
+           about);
+}
+
+void SchemaVisitor::analyses(const char* key, const std::vector<model::AnalysisDescription>&, const Key& about) {
+  Json types = Json::array();
+  model::analysis_types([&]<class Task>(const char* type, const char* says) {
+    SchemaVisitor one;
+    model::AnalysisDescription analysis;
+    name_field(one, analysis);
+    one.property("type", Json::object({{"const", Json::text(type)}}), {.required = true, .says = says});
+    fields(one, analysis.task.emplace<Task>());
+    types.add(one.schema());
+  });
+  property(key, list(Json::object({{"oneOf", types}}), {1}), about);
 }
 
 void SchemaVisitor::excludes(const char* first, const char* second) {

@@ -197,6 +197,8 @@ class SchemaVisitor {
     property("frequency", reference("frequency_range"), hertz);
     exactly_one_of({"angular_frequency", "frequency"});
   }
+  void parameters(const char* key, const std::vector<model::ParameterDescription>&, const Key& about);
+  void analyses(const char* key, const std::vector<model::AnalysisDescription>&, const Key& about);
   void sweep(const char* key, const model::SweepDescription&, const Key& about) {
     property(key, reference("sweep"), about);
   }

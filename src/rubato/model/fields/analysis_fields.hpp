@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-// The keys of analyses, besides `name` and `type`, which all of them have.
+// The keys of analyses. `type` says which of them an analysis has.
 namespace rubato::model {
 
 /// The table of a step that chooses itself.
@@ -263,6 +263,15 @@ void fields(auto& visit, StaticDescription& equilibrium) {
   held_displacements_field(visit, equilibrium.displacements);
   observe_field(visit, equilibrium.observe);
   section_forces_field(visit, equilibrium.section_forces);
+}
+
+/// Of analyses of all types.
+void name_field(auto& visit, AnalysisDescription& analysis) {
+  visit.where(analysis.where);
+  visit.text("name", analysis.name, {.required = true, .says = "names the files of results"});
+  visit.title("analysis", analysis.name);
+  visit.rule(
+      R"({"properties": {"name": {"pattern": "^[^/\\\\.\\u0000-\\u001f\\u007f]+$", "not": {"const": "results"}}}})");
 }
 
 /// Calls take.template operator()<Description>(type, what it does) for every `type` of analysis.
