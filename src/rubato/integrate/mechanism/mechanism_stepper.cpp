@@ -86,6 +86,7 @@ class MechanismStepper final : public Stepper {
         : s(of), from(from_), h(h_), to(to_) {}
 
     double evaluate(bool with_tangent) {
+      if (!is_first) s.take_correction();
       s.place(from, h, to);
       s.equations_.go_to(to, model::Side::left);
       if (with_tangent) {
@@ -117,11 +118,8 @@ class MechanismStepper final : public Stepper {
 
     double expected_contraction(double size) { return s.first_ratio(from, size); }
 
-    void move(double /*part*/) {
-      to.multiplier += (1.0 / s.scale_) * s.constraint_;
-      s.mechanism_.to_travel(s.travel_, s.force_);
-      s.travel_ += s.force_;
-    }
+    // The travel follows where the iterate is placed: a last correction that is negligible leaves it where it is.
+    void move(double /*part*/) { to.multiplier += (1.0 / s.scale_) * s.constraint_; }
 
     // Errors shrink by the ratio of the last two corrections: what is left is the rest of a geometric series.
     numerics::NewtonVerdict judge(const numerics::NewtonIteration& iteration) {
@@ -182,6 +180,12 @@ class MechanismStepper final : public Stepper {
     for (Index i = 0; i < n; ++i) travel[i] = h * v[i] + 0.5 * h * h * shifted[i] + by_change * (shifted[i] - now[i]);
   }
 
+  /// Adds the correction in force_ to the travel.
+  void take_correction() {
+    mechanism_.to_travel(travel_, force_);
+    travel_ += force_;
+  }
+
   /// q, v and both accelerations of `to` for the travel dq.
   void place(const system::State& from, double h, system::State& to) {
     const Index n = travel_.size();
@@ -210,7 +214,10 @@ class MechanismStepper final : public Stepper {
 
   /// @param is_placed  see Iterates
   StepReport finish(const system::State& from, double h, bool is_placed, system::State& to) {
-    if (!is_placed) place(from, h, to);
+    if (!is_placed) {
+      take_correction();
+      place(from, h, to);
+    }
     if (plan_.projects_velocities && constraint_.size() > 0) {
       equations_.exceed_multipliers(from.reaction_lag, 0.0);
       if (!project(is_placed, to)) return fault(StepOutcome::singular);
