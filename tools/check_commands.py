@@ -76,9 +76,11 @@ def run_edited(scratch, study, pieces):
 
 
 def check_links(page, text):
-    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text) + re.findall(r'src="([^"]+)"', text):
+    # A lambda of C++ in a block of code looks like a link.
+    prose = re.sub(r"^```.*?^```", lambda block: "\n" * block[0].count("\n"), text, flags=re.DOTALL | re.MULTILINE)
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", prose) + re.findall(r'src="([^"]+)"', prose):
         if "://" not in target and not (page.parent / target).exists():
-            fail(page, text[: text.index(target)].count("\n") + 1, f"{target} does not exist")
+            fail(page, prose[: prose.index(target)].count("\n") + 1, f"{target} does not exist")
 
 
 for page in pages:
