@@ -35,6 +35,11 @@ std::vector<DoubtfulValue> doubtful_values(const ModelDescription& description,
   for (const auto& slider : description.sliders)
     take_friction(slider.friction_coefficient, fmt::format("slider \"{}\": friction_coefficient", slider.name),
                   parameters, all);
+  for (const LawDescription& law : description.laws) {
+    const LawKind& kind = law_kind(law.kind);
+    if (const std::string why = kind.doubt ? kind.doubt(law, parameters) : ""; !why.empty())
+      all.push_back({law.where, fmt::format("{} \"{}\": {}", law.kind, law.name, why)});
+  }
   for (const auto& joint : description.joints)
     if (joint.friction)
       take_friction(joint.friction->coefficient, fmt::format("joint \"{}\": coefficient of friction", joint.name),

@@ -140,6 +140,13 @@ TEST(BoucWen, RefusesWhatItCannotBe) {
   EXPECT_THROW(make("bouc_wen", {1.0, 0.0, 1.0, 0.5, 0.5, 0.5}), InvalidInput);
 }
 
+TEST(BoucWen, DoubtsLoopsThatMakeEnergy) {
+  LawDescription description = law_description(law_kind("bouc_wen"));
+  EXPECT_EQ(law_kind("bouc_wen").doubt(description, {}), "");
+  description.values[4] = 0.7;
+  EXPECT_NE(law_kind("bouc_wen").doubt(description, {}).find("gamma is 0.7 and beta 0.5"), std::string::npos);
+}
+
 TEST(NonlinearSpring, IsItsFormulaWithExactSlopes) {
   const auto law = make("nonlinear_spring", {Quantity("k*u + c*rate + k3*u^3")}, {{"k", 2.0}, {"c", 0.3}, {"k3", 5.0}});
   const LawAnswer answer = law->at({0.7, -1.1, 0.0, Side::right}, nullptr);

@@ -268,6 +268,17 @@ std::shared_ptr<const Law> make(const LawDescription& description, const numeric
   return std::make_shared<BoucWen>(value[stiffness], value[ratio], value[a], value[beta], value[gamma], value[n]);
 }
 
+/// Erlicher and Point 2004: beyond |gamma| <= beta some motions take energy out of the element.
+std::string doubt(const LawDescription& description, const numerics::Parameters& parameters) {
+  const double beta = evaluate(description.values[3], parameters, "beta");
+  const double gamma = evaluate(description.values[4], parameters, "gamma");
+  if (!(std::abs(gamma) > beta)) return {};
+  return fmt::format(
+      "gamma is {:.6g} and beta {:.6g}: where the size of gamma exceeds beta, small cycles about a bias "
+      "make energy, which no material does; take |gamma| <= beta",
+      gamma, beta);
+}
+
 }  // namespace
 
 LawKind bouc_wen();
@@ -282,7 +293,8 @@ LawKind bouc_wen() {
            {"beta", Type::number, "1/m^n", 0.5, "how much steeper it unloads than it loads"},
            {"gamma", Type::number, "1/m^n", 0.5, "with beta the limit of z, (A / (beta + gamma))^(1/n)"},
            {"n", Type::number, "", 1.0, "how sharply it yields"}},
-          make};
+          make,
+          doubt};
 }
 
 }  // namespace rubato::model

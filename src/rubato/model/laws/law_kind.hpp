@@ -54,6 +54,8 @@ struct LawKind {
   std::function<std::shared_ptr<const Law>(const LawDescription& description, const numerics::Parameters& parameters,
                                            const std::string& part)>
       make;
+  /// What is doubtful of values that make() takes; empty: nothing.
+  std::function<std::string(const LawDescription& description, const numerics::Parameters& parameters)> doubt = {};
 };
 
 /// A description of a kind with what its keys are where they are left out.
