@@ -1,3 +1,4 @@
+#include <rubato/analysis/easiest_motion.hpp>
 #include <rubato/analysis/static_by_growth.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
@@ -53,6 +54,11 @@ class Growth final : public numerics::NewtonProblem {
     evaluate(true);
     result.factorisations = factorisations_;
     result.reached = reached;
+    if (reached == 0.0 && !is_stable()) {
+      result.outcome = StaticOutcome::mechanism;
+      for (const Index i : moving_) result.moving.push_back(free_[static_cast<std::size_t>(i)]);
+      return result;
+    }
     if (reached < 1.0) {
       result.outcome = StaticOutcome::gives_way_on_the_way;
       name_easiest(result);
@@ -89,11 +95,9 @@ class Growth final : public numerics::NewtonProblem {
   }
   bool is_solved(double) const { return is_round_off_; }
   bool factorise() {
-    const SparseMatrix matrix = tangent();
-    if (!is_analysed_) factor_.analyse(matrix);
-    is_analysed_ = true;
+    if (free_.empty()) return true;
     ++factorisations_;
-    return free_.empty() || factor_.factorise(matrix);
+    return factor_.factorise(analysed_tangent());
   }
   double correct() {
     Vector right(static_cast<Index>(free_.size())), solution;
@@ -185,7 +189,17 @@ class Growth final : public numerics::NewtonProblem {
     return matrix;
   }
 
-  bool is_stable() { return factorise(); }
+  SparseMatrix analysed_tangent() {
+    SparseMatrix matrix = tangent();
+    if (!is_analysed_) factor_.analyse(matrix);
+    is_analysed_ = true;
+    return matrix;
+  }
+
+  bool is_stable() {
+    return free_.empty() ||
+           factorise_resisting(analysed_tangent(), numerics::Pivots::positive, factor_, factorisations_, moving_);
+  }
 
   /// The coordinates that a little more of the loads would move most.
   void name_easiest(StaticEquilibrium& result) {
@@ -201,6 +215,7 @@ class Growth final : public numerics::NewtonProblem {
   std::span<const model::Held> held_;
   Vector load_;
   std::vector<Index> place_, free_;  // place of a coordinate among the free ones, and back
+  std::vector<Index> moving_;        // places of the easiest motion
   numerics::OrderedFactor factor_;
   bool is_analysed_ = false, is_round_off_ = false;
   int factorisations_ = 0;

@@ -1,3 +1,4 @@
+#include <rubato/analysis/easiest_motion.hpp>
 #include <rubato/analysis/static_by_growth.hpp>
 #include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/numerics/newton.hpp>
@@ -10,15 +11,8 @@
 namespace rubato::analysis {
 namespace {
 
-// A pivot that is small against the diagonal entry it came from raises the suspicion of a mechanism. A frame that turns
-// freely leaves 2e-16 with 60 elements and 4e-10 with 33,000: elimination sums up roundings of ever stiffer elements.
-constexpr double small_pivot = 1e-8;
-// The motion that goes with it decides: its energy over the sum of the absolute terms of that energy. The same free
-// frame has 1e-17 with any number of elements; well supported it has 1e-6 with 60 and 3e-12 with 33,000.
-constexpr double no_energy = 16.0 * std::numeric_limits<double>::epsilon();
 constexpr double drift = 1e-9;       // of its stiffness that an open stop lends where nothing else resists
 constexpr double round_off = 1e-12;  // of a relative displacement: a step as short changes no contact
-constexpr double shift = 1e-12;      // of the inverse iteration; larger ones leave bending in the motion of a fine mesh
 
 /// Forces of the sliders and stops for given displacements.
 class Contacts {
@@ -223,47 +217,11 @@ class StaticSolver {
     if (free_.empty()) return true;
     const SparseMatrix matrix = tangent(set, open);
     factor_.analyse(matrix);
-    const bool has_factor = eliminate(matrix);
-    const Vector diagonal = matrix.diagonal();
-    if (has_factor && (factor_.pivots().array().abs() > small_pivot * diagonal.array().abs()).all()) return true;
-    const Vector motion = easiest_motion(matrix, diagonal);
-    const double energy = motion.dot(matrix * motion);
-    const double terms = motion.cwiseAbs().dot(matrix.cwiseAbs() * motion.cwiseAbs());
-    if (has_factor && energy > no_energy * terms && eliminate(matrix)) return true;
+    std::vector<Index> moving;
+    if (factorise_resisting(matrix, numerics::Pivots::nonzero, factor_, result_.factorisations, moving)) return true;
     result_.moving.clear();
-    name_moving(motion, diagonal);
+    for (const Index i : moving) result_.moving.push_back(free_[static_cast<std::size_t>(i)]);
     return false;
-  }
-
-  bool eliminate(const SparseMatrix& matrix) {
-    ++result_.factorisations;
-    return factor_.factorise(matrix, numerics::Pivots::nonzero);
-  }
-
-  /// The motion of least resistance, by inverse iteration with the matrix shifted by a share of its diagonal.
-  Vector easiest_motion(SparseMatrix matrix, const Vector& diagonal) {
-    const Vector scale = scale_of(diagonal);
-    for (Index i = 0; i < scale.size(); ++i) matrix.coeffRef(i, i) += shift * scale[i];
-    Vector motion(scale.size()), next;
-    const bool has_factor = eliminate(matrix);
-    for (Index i = 0; i < motion.size(); ++i)  // meets every motion, and the same ones on every run
-      motion[i] = (1.0 + 0.5 * std::sin(1.0 + 2.7 * static_cast<double>(i))) / std::sqrt(scale[i]);
-    for (int iteration = 0; has_factor && iteration < 4; ++iteration) {
-      factor_.solve(scale.cwiseProduct(motion), next);
-      motion = next / next.cwiseAbs().maxCoeff();
-    }
-    return motion;
-  }
-
-  static Vector scale_of(const Vector& diagonal) {
-    return diagonal.cwiseAbs().cwiseMax(shift * std::max(diagonal.cwiseAbs().maxCoeff(), 1.0));
-  }
-
-  void name_moving(const Vector& motion, const Vector& diagonal) {
-    // Metres and radians compare by the energy that moving one coordinate alone would take.
-    const Vector share = scale_of(diagonal).cwiseSqrt().cwiseProduct(motion.cwiseAbs());
-    for (Index i = 0; i < share.size(); ++i)
-      if (!(share[i] <= 1e-3 * share.maxCoeff())) result_.moving.push_back(free_[static_cast<std::size_t>(i)]);
   }
 
   /// Where between 0 and 1 contacts change their states on the way along `change`, rising.

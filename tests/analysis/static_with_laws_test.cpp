@@ -1,0 +1,64 @@
+#include <rubato/analysis/static_equilibrium.hpp>
+#include <rubato/model/laws/law_kind.hpp>
+
+#include "support/assembled.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+// Static states of structures with other laws than sliders and stops.
+namespace rubato::analysis {
+namespace {
+
+model::LawDescription bouc_wen(const char* first, const char* second, double stiffness) {
+  model::LawDescription law;
+  law.kind = law.name = "bouc_wen";
+  law.between = {first, second};
+  law.values = {stiffness, 0.0, 1.0, 0.5, 0.5, 1.0};
+  return law;
+}
+
+// Three masses that only each other hold: round-off of the last pivot has either sign, and is no stiffness. Two of
+// twelve such structures were told to rest 1e14 m away.
+TEST(StaticWithLaws, RefusesAStructureThatFloats) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> stiffness(1.0, 10.0);
+  for (int i = 0; i < 60; ++i) {
+    model::ModelDescription description;
+    description.coordinates = {{"x", 1.0, 0.0, 0.0, {}}, {"y", 1.0, 0.0, 0.0, {}}, {"z", 1.0, 0.0, 0.0, {}}};
+    description.springs = {{{"x", "y"}, {}, stiffness(random), {}}, {{"x", "z"}, {}, stiffness(random), {}}};
+    description.held_forces = {{"y", 0.3, {}}};
+    description.laws = {bouc_wen("y", "z", 0.7)};
+    const StaticEquilibrium found = find_equilibrium(testing::assembled(description), {});
+    EXPECT_EQ(found.outcome, StaticOutcome::mechanism) << i;
+    EXPECT_EQ(found.moving, (std::vector<Index>{0, 1, 2})) << i;
+  }
+}
+
+// A coordinate that nothing joins is named, not the one that a law holds.
+TEST(StaticWithLaws, NamesWhatNothingResists) {
+  model::ModelDescription description;
+  description.coordinates = {{"held", 1.0, 0.0, 0.0, {}}, {"loose", 1.0, 0.0, 0.0, {}}};
+  description.held_forces = {{"loose", 0.3, {}}};
+  description.laws = {bouc_wen("held", "ground", 0.7)};
+  const StaticEquilibrium found = find_equilibrium(testing::assembled(description), {});
+  EXPECT_EQ(found.outcome, StaticOutcome::mechanism);
+  EXPECT_EQ(found.moving, std::vector<Index>{1});
+}
+
+// Where every coordinate is held nothing is to be solved: what holds it is the force of the law, z = 1 - exp(-u) for n
+// = 1.
+TEST(StaticWithLaws, TellsTheReactionWhereEverythingIsHeld) {
+  model::ModelDescription description;
+  description.coordinates = {{"x", 1.0, 0.0, 0.0, {}}};
+  description.laws = {bouc_wen("x", "ground", 0.7)};
+  const std::vector<model::Held> held{{0, 0.5}};
+  const StaticEquilibrium found = find_equilibrium(testing::assembled(description), held);
+  ASSERT_EQ(found.outcome, StaticOutcome::found);
+  EXPECT_NEAR(found.reaction[0], 0.7 * (1.0 - std::exp(-0.5)), 1e-14);
+}
+
+}  // namespace
+}  // namespace rubato::analysis
