@@ -33,8 +33,9 @@ def static(model, state, table, allowed):
     return checks
 
 
-def transient(model, table, rows, got, pick, times, allowed, observed_all, ends):
-    """`got`: q, v as told; `allowed`: of positions, over the largest; `ends`: whether rows stand at the ends of steps."""
+def transient(model, table, rows, got, pick, times, allowed, observed_all, ends, step=0.0):
+    """`got`: q, v as told; `allowed`: of positions, over the largest; `ends`: whether rows stand at the ends of steps; `step`: where they
+    are equal: what u goes on and back within a step in which it turns is not seen by an element that remembers."""
     checks = []
     exact = 1e-9 if ends else 2 * allowed + 1e-9
     nothing = 1e-9 * numpy.max(numpy.abs(rows["q"])), 1e-9 * max(numpy.max(numpy.abs(rows["law_force"])), numpy.max(
@@ -60,7 +61,9 @@ def transient(model, table, rows, got, pick, times, allowed, observed_all, ends)
         f = rows["law_force"][:, i]
         size_f = max(numpy.max(numpy.abs(f)), nothing[1], 1e-300)
         if law.remembers:
-            checks.append((header, numpy.max(numpy.abs(told_f - f)) / max(size_f, law.k * min(size_u, law.z_max)), 5 * allowed * max(1.0, share)))
+            unseen = law.k * law.A * step**2 / 4 * numpy.max(numpy.abs(rows["a"] @ law.b))
+            size_f = max(size_f, law.k * min(size_u, law.z_max))
+            checks.append((header, numpy.max(numpy.abs(told_f - f)) / size_f, 5 * allowed * max(1.0, share) + unseen / size_f))
         elif observed_all:
             rate = got["v"] @ law.b
             own = numpy.array([_nearest_force(law, *now) for now in zip(told_u, rate, times, told_f)])

@@ -102,7 +102,7 @@ def transient(study, model, analysis, table, pairs):
             if order == 0 and not contacts:  # where a jump lies in its step, and what phase a fast mode has, is chance
                 limit = 0.3
             checks.append((f"error at half the step (order {order})", e2, max(limit, 3e-3 if model.sliders or model.stops else 1e-5 if kinks else 2e-7)))
-            checks += judge_laws.transient(model, table, rows, got, pick, times[pick], 3 * limit + 1e-6, whole, True)
+            checks += judge_laws.transient(model, table, rows, got, pick, times[pick], 3 * limit + 1e-6, whole, True, h2)
         else:
             return None
     return worst(name, "transient", checks)
