@@ -73,11 +73,11 @@ std::shared_ptr<const system::Mechanism> mechanism_of(const model::StudyDescript
 
 double PreparedStudy::expected_bytes() const {
   double bytes = 0.0;
-  for (const auto& outline : outlines) bytes += outline.expected_bytes;
+  for (const auto& analysis : planned) bytes += analysis.outline.expected_bytes;
   return bytes;
 }
 
-PreparedStudy prepare(const StudyOptions& options) {
+std::unique_ptr<const PreparedStudy> prepare(const StudyOptions& options) {
   const numerics::Parameters overrides = overrides_of(options.set);
   io::SourceFiles files;
   model::StudyDescription study = io::read_study(options.study, &files);
@@ -85,17 +85,17 @@ PreparedStudy prepare(const StudyOptions& options) {
   const auto analyses = chosen(study, options.only);
   std::string task = "to assemble the model";
   try {
-    PreparedStudy prepared{study,
-                           files,
-                           overrides,
-                           parameters,
-                           analyses,
-                           {},
-                           assembled(study, parameters),
-                           mechanism_of(study, parameters)};
+    auto prepared = std::make_unique<PreparedStudy>(PreparedStudy{study,
+                                                                  files,
+                                                                  overrides,
+                                                                  parameters,
+                                                                  analyses,
+                                                                  {},
+                                                                  assembled(study, parameters),
+                                                                  mechanism_of(study, parameters)});
     for (const auto& analysis : analyses) {
       task = fmt::format("to check the analysis \"{}\"", analysis.name);
-      prepared.outlines.push_back(analysis::check_analysis(analysis, prepared.input()));
+      prepared->planned.push_back(analysis::plan_analysis(analysis, prepared->input()));
     }
     return prepared;
   } catch (const std::bad_alloc&) {

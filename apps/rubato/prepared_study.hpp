@@ -22,7 +22,7 @@ struct PreparedStudy {
   io::SourceFiles files;  ///< that the study names
   numerics::Parameters overrides, parameters;
   std::vector<model::AnalysisDescription> analyses;
-  std::vector<analysis::AnalysisOutline> outlines;     ///< of each analysis
+  std::vector<analysis::PlannedAnalysis> planned;      ///< each of them
   system::LocallyNonlinear system;                     ///< empty where the model is a mechanism
   std::shared_ptr<const system::Mechanism> mechanism;  ///< null where it is a structure
 
@@ -30,7 +30,7 @@ struct PreparedStudy {
   analysis::StudyInput input() const { return {description, overrides, parameters, system, mechanism.get()}; }
 };
 
-/// Throws InvalidInput.
-PreparedStudy prepare(const StudyOptions& options);
+/// Throws InvalidInput. What is planned refers to the rest of the study, which must stay where it is.
+std::unique_ptr<const PreparedStudy> prepare(const StudyOptions& options);
 
 }  // namespace rubato::app

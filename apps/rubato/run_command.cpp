@@ -48,7 +48,7 @@ void require_size(const PreparedStudy& study, const RunOptions& options) {
   constexpr double most_points = 1e6;
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
-    const auto& outline = study.outlines[i];
+    const auto& outline = study.planned[i].outline;
     const auto& task = study.analyses[i];
     if (outline.memory > 0.8 * memory)
       throw InvalidInput(task.where,
@@ -86,7 +86,7 @@ Journals open_journals(const PreparedStudy& study, const RunOptions& options, co
   Journals journals(study.analyses.size());
   for (std::size_t i = 0; i < journals.size(); ++i) {
     const auto& task = study.analyses[i];
-    if (study.outlines[i].points == 0.0) continue;
+    if (study.planned[i].outline.points == 0.0) continue;
     const auto fingerprint = io::fingerprint_of(study.description, study.files, study.overrides, task.name);
     journals[i] = std::make_unique<io::JournalFile>(folder / (task.name + ".resume"), fingerprint, options.resume);
   }
@@ -159,7 +159,8 @@ class Runner {
     bool is_refused = false;
     try {
       report = analysis::run_analysis(
-          task, {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
+          task, study_.planned[index],
+          {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
     } catch (const std::bad_alloc&) {
       report = {RunStatus::failed, "memory ran out; observe fewer coordinates, or take a smaller model", {}};
     } catch (const InvalidInput& fault) {
@@ -268,7 +269,8 @@ void tell_doubts(const PreparedStudy& study) {
 }  // namespace
 
 int run(const RunOptions& options) {
-  const PreparedStudy study = prepare(options.study);
+  const std::unique_ptr<const PreparedStudy> prepared = prepare(options.study);
+  const PreparedStudy& study = *prepared;
   tell_doubts(study);
   require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
@@ -338,7 +340,8 @@ int check(const StudyOptions& options) {
   const auto counted = [](Index count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  const PreparedStudy study = prepare(options);
+  const std::unique_ptr<const PreparedStudy> prepared = prepare(options);
+  const PreparedStudy& study = *prepared;
   tell_doubts(study);
   if (study.mechanism) {
     const analysis::MechanismSize size = analysis::size_of(*study.mechanism);
@@ -353,8 +356,8 @@ int check(const StudyOptions& options) {
                study.system.stop_count() > 0 ? ", " + counted(study.system.stop_count(), "stop") : "");
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
-    fmt::print("  {}: {}\n", study.analyses[i].name, study.outlines[i].summary);
-    for (const std::string& warning : study.outlines[i].warnings)
+    fmt::print("  {}: {}\n", study.analyses[i].name, study.planned[i].outline.summary);
+    for (const std::string& warning : study.planned[i].outline.warnings)
       tell(fmt::format("{}: warning: analysis \"{}\": {}", study.description.file, study.analyses[i].name, warning));
   }
   return exit_done;

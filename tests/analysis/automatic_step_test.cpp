@@ -1,5 +1,5 @@
 #include <rubato/analysis/automatic_step.hpp>
-#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/structure_transient.hpp>
 
 #include "support/free_vibration.hpp"
 #include "support/memory_sink.hpp"
@@ -43,7 +43,8 @@ Recorded run(const system::LocallyNonlinear& system, const model::TransientDescr
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
-  result.report = run_transient("run", plan_transient("run", {}, description, system, {}), system, context);
+  result.report = StructureTransient(system).run(
+      "run", plan_transient("run", {}, description, StructureTransient(system), {}), context);
   return result;
 }
 

@@ -1,6 +1,6 @@
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/static_equilibrium.hpp>
-#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/structure_transient.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
 
@@ -48,7 +48,8 @@ Released let_go(const system::LocallyNonlinear& system, const model::StepDescrip
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{run.sink, progress, stop};
-  run.report = run_transient("run", plan_transient("run", {}, transient, system, {}), system, context);
+  run.report = StructureTransient(system).run(
+      "run", plan_transient("run", {}, transient, StructureTransient(system), {}), context);
   return run;
 }
 

@@ -1,4 +1,4 @@
-#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/structure_transient.hpp>
 #include <rubato/system/assemble.hpp>
 
 #include "support/memory_sink.hpp"
@@ -44,7 +44,8 @@ Recorded run(const system::LocallyNonlinear& system, const model::TransientDescr
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
-  result.report = run_transient("run", plan_transient("run", {}, d, system, {}), system, context);
+  result.report =
+      StructureTransient(system).run("run", plan_transient("run", {}, d, StructureTransient(system), {}), context);
   return result;
 }
 
@@ -192,8 +193,8 @@ TEST(Transient, StopsWhenAskedAndKeepsWhatItHas) {
   const std::atomic<bool> stop{true};
   RunContext context{result.sink, progress, stop};
   const auto system = testing::single_mass();
-  result.report =
-      run_transient("run", plan_transient("run", {}, description("rk4", 0.01, 1.0), system, {}), system, context);
+  result.report = StructureTransient(system).run(
+      "run", plan_transient("run", {}, description("rk4", 0.01, 1.0), StructureTransient(system), {}), context);
   EXPECT_EQ(result.report.status, RunStatus::interrupted);
   EXPECT_EQ(result.report.message, "interrupted at t = 0.01 s of 1 s");
   EXPECT_EQ(result.table().rows.size(), 2u);
@@ -217,7 +218,7 @@ TEST(Transient, SaysWhenWhereAndWhatToTryWhenALoadIsNotFinite) {
 
 std::string refusal(const system::LocallyNonlinear& system, const model::TransientDescription& d) {
   try {
-    plan_transient("run", {"study.toml", 7, 1}, d, system, {});
+    plan_transient("run", {"study.toml", 7, 1}, d, StructureTransient(system), {});
   } catch (const InvalidInput& fault) {
     return fault.what();
   }

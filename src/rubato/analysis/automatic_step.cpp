@@ -1,6 +1,5 @@
 #include <rubato/analysis/automatic_step.hpp>
-#include <rubato/analysis/load_swings.hpp>
-#include <rubato/integrate/stability.hpp>
+#include <rubato/analysis/transient_kind.hpp>
 
 #include <fmt/format.h>
 
@@ -19,50 +18,48 @@ integrate::Controller controller_of(const std::string& name) {
   return integrate::PiControl{};
 }
 
-integrate::EstimatorKind estimator_of(const model::StepDescription& description, const integrate::Method& method,
-                                      double tolerance, double reference, const system::LocallyNonlinear& system) {
+integrate::EstimatorKind estimator_of(const std::string& title, const model::StepDescription& description,
+                                      const TransientKind& kind, const TransientPlan& plan, double tolerance,
+                                      double reference) {
   const bool is_paper = description.estimator.empty() && description.controller == "cardona_cassano" &&
-                        !std::holds_alternative<integrate::RungeKutta>(method.formula) &&
-                        integrate::is_of_second_order(method);
+                        !std::holds_alternative<integrate::RungeKutta>(plan.method.formula) &&
+                        integrate::is_of_second_order(plan.method);
   if (is_paper || description.estimator == "inertia_jump") {
-    const double known = description.reference_is_initial ? 0.0 : system.reference();
+    const double known = description.reference_is_initial ? 0.0 : kind.reference();
     return integrate::InertiaJump{tolerance, description.reference ? reference : known, description.as_printed};
   }
-  for (const bool is_given :
-       {description.reference.has_value(), description.reference_is_initial, description.as_printed})
-    if (is_given)
-      throw InvalidInput(description.where,
-                         "step: \"reference\" and \"as_printed\" belong to the estimator inertia_jump");
+  if (description.reference || description.reference_is_initial || description.as_printed)
+    throw InvalidInput(description.where,
+                       title + "\"reference\" and \"as_printed\" belong to the estimator inertia_jump");
   if (description.estimator == "local_error") return integrate::LocalError{tolerance};
   if (description.estimator == "embedded") return integrate::Embedded{tolerance};
-  return integrate::default_estimator(method, tolerance, system.stop_count() > 0);
+  return kind.default_estimator(plan, tolerance);
 }
 
-/// Of the stable step. At the limit itself the two eigenvalues of an undamped mode meet at -1, and its velocity grows
-/// with the number of steps: a frame under linear acceleration, whose displacements kept to their tolerance, moved 20
-/// times as fast as it should. At nine tenths what a step puts into the mode grows by 2.3 at most.
-constexpr double stable_share = 0.9;
-
-/// The largest step that neither passes over harmonic loads nor leaves the stable range.
-double largest_step(const std::string& title, const model::StepDescription& description,
-                    const integrate::Method& method, const system::LocallyNonlinear& system, const LoadSwings& swings,
-                    const numerics::Parameters& parameters, double duration, bool allow_unstable) {
-  const double safe = std::min(duration / 50.0, swings.harmonic_limit());
-  const double largest = std::min(duration, positive_or(description.largest, safe, title + "largest", parameters));
-  if (allow_unstable) return largest;
-  const integrate::ModelStability limit = integrate::stability_of(method, system);
-  if (stable_share * limit.step >= largest) return largest;
-  if (limit.step == 0.0)
+void plan_step_range(const std::string& title, const model::StepDescription& description,
+                     const numerics::Parameters& parameters, double duration, integrate::StepPlan& plan) {
+  plan.smallest = positive_or(description.smallest, least_step * duration, title + "smallest", parameters);
+  plan.first = positive_or(description.first, 0.0, title + "first", parameters);
+  if (!(plan.smallest <= plan.largest))
+    throw InvalidInput(
+        description.smallest ? description.smallest->where : description.where,
+        fmt::format("{}the smallest step {} s is beyond the largest, {} s", title, plan.smallest, plan.largest));
+  if (plan.first > 0.0 && !(plan.first >= plan.smallest && plan.first <= plan.largest))
+    throw InvalidInput(description.first->where,
+                       fmt::format("{}the first step {} s lies outside the range from {} s to {} s", title, plan.first,
+                                   plan.smallest, plan.largest));
+  if (std::holds_alternative<integrate::FixedStep>(plan.controller) && !description.first)
     throw InvalidInput(description.where,
-                       fmt::format("{}{} has no stable step for mode {} of the model; take \"generalized_alpha\", or "
-                                   "set allow_unstable = true",
-                                   title, method.name, limit.mode));
-  if (!description.largest) return stable_share * limit.step;
-  if (largest <= limit.step) return largest;
-  throw InvalidInput(description.largest->where,
-                     fmt::format("{}largest = {} s is beyond the stability limit of {}, {:.6g} s, which mode {} of the "
-                                 "model sets; leave it out, or set allow_unstable = true",
-                                 title, largest, method.name, limit.step, limit.mode));
+                       title + "the controller fixed keeps the first step; give it, first = ... [s]");
+}
+
+void plan_swings(const model::StepDescription& description, const LoadSwings& swings, integrate::StepPlan& plan,
+                 std::vector<std::string>& warnings) {
+  if (std::holds_alternative<integrate::FixedStep>(plan.controller))
+    return swings.warn_of_long_steps(plan.first, warnings);
+  if (description.largest) return;
+  swings.bound(plan);
+  swings.warn_of_unknown(warnings);
 }
 
 }  // namespace
@@ -88,65 +85,31 @@ double positive_or(const std::optional<model::Quantity>& quantity, double otherw
   return value;
 }
 
-void plan_step_range(const std::string& title, const model::StepDescription& description,
-                     const numerics::Parameters& parameters, double duration, double largest,
-                     integrate::StepPlan& plan) {
-  plan.smallest = positive_or(description.smallest, least_step * duration, title + "smallest", parameters);
-  plan.largest = largest;
-  plan.first = positive_or(description.first, 0.0, title + "first", parameters);
-  if (!(plan.smallest <= plan.largest))
-    throw InvalidInput(
-        description.smallest ? description.smallest->where : description.where,
-        fmt::format("{}the smallest step {} s is beyond the largest, {} s", title, plan.smallest, plan.largest));
-  if (plan.first > 0.0 && !(plan.first >= plan.smallest && plan.first <= plan.largest))
-    throw InvalidInput(description.first->where,
-                       fmt::format("{}the first step {} s lies outside the range from {} s to {} s", title, plan.first,
-                                   plan.smallest, plan.largest));
-  if (std::holds_alternative<integrate::FixedStep>(plan.controller) && !description.first)
-    throw InvalidInput(description.where,
-                       title + "the controller fixed keeps the first step; give it, first = ... [s]");
-}
-
-void plan_swings(const model::StepDescription& description, const LoadSwings& swings, integrate::StepPlan& plan,
-                 std::vector<std::string>& warnings) {
-  if (std::holds_alternative<integrate::FixedStep>(plan.controller))
-    return swings.warn_of_long_steps(plan.first, warnings);
-  if (description.largest) return;
-  swings.bound(plan);
-  swings.warn_of_unknown(warnings);
-}
-
-AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
-                                  const integrate::Method& method, const system::LocallyNonlinear& system,
-                                  const system::State& start, const numerics::Parameters& parameters, double duration,
-                                  bool allow_unstable, std::vector<std::string>& warnings) {
-  const std::string title = analysis + "step: ";
+AutomaticStep plan_automatic_step(const TransientRequest& request, const TransientKind& kind,
+                                  const TransientPlan& transient, std::vector<std::string>& warnings) {
+  const model::StepDescription& description = *request.description.automatic_step;
+  const std::string title = request.title() + "step: ";
   AutomaticStep step;
-  step.tolerance = model::evaluate(description.tolerance, parameters, title + "tolerance");
-  const double reference = positive_or(description.reference, 0.0, title + "reference", parameters);
+  step.tolerance = model::evaluate(description.tolerance, request.parameters, title + "tolerance");
+  const double reference = positive_or(description.reference, 0.0, title + "reference", request.parameters);
   integrate::StepPlan& plan = step.plan;
   plan.controller = controller_of(description.controller);
-  // A pair is of so high an order that a transition within a step is all of its error, and its estimate does not see
-  // it.
-  const bool is_pair = std::holds_alternative<integrate::RungeKutta>(method.formula);
-  plan.locate_sliders = is_pair || description.locate_events.has_value();
-  plan.locate_events =
-      description.locate_events.value_or(system.stop_count() > 0 || (is_pair && system.slider_count() > 0));
   plan.rebuild = description.rebuild;
-  const LoadSwings swings(system, duration);
-  plan_step_range(title, description, parameters, duration,
-                  largest_step(title, description, method, system, swings, parameters, duration, allow_unstable), plan);
+  kind.plan_events(title, description, transient, plan);
+  const LoadSwings swings = kind.swings(transient.duration);
+  const double safe = std::min(transient.duration / 50.0, swings.harmonic_limit());
+  const double wanted = positive_or(description.largest, safe, title + "largest", request.parameters);
+  plan.largest = kind.largest_step(title, description, transient, std::min(transient.duration, wanted));
+  plan_step_range(title, description, request.parameters, transient.duration, plan);
   plan_swings(description, swings, plan, warnings);
-  step.estimator = estimator_of(description, method, step.tolerance, reference, system);
+  step.estimator = estimator_of(title, description, kind, transient, step.tolerance, reference);
   try {
-    const auto stepper = integrate::make_stepper(method, system);
-    const auto estimator = integrate::make_estimator(step.estimator, method, system, *stepper, duration, plan.bounds);
-    estimator->start(integrate::consistent_start(system, start));
-    const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
-    step.expected_steps = is_fixed ? std::ceil(duration / plan.first) : swings.least_steps(plan);
+    kind.try_estimator(transient, step);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }
+  const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
+  step.expected_steps = is_fixed ? std::ceil(transient.duration / plan.first) : swings.least_steps(plan);
   return step;
 }
 
@@ -192,7 +155,10 @@ std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticS
       step.tolerance, report.beyond_tolerance, report.march.steps, report.largest_error);
 }
 
-std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length) {
+std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report,
+                                                            const TransientPlan& plan, double length) {
+  if (!plan.automatic)
+    return {{"steps", std::to_string(report.march.steps)}, {"factorisations", std::to_string(report.factorisations)}};
   std::vector<std::pair<std::string, std::string>> all{
       {"steps", std::to_string(report.march.steps)},       {"rejected", std::to_string(report.rejected)},
       {"failed", std::to_string(report.failed)},           {"events", std::to_string(report.events)},

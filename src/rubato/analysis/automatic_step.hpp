@@ -12,7 +12,9 @@
 
 namespace rubato::analysis {
 
-class LoadSwings;
+class TransientKind;
+struct TransientPlan;
+struct TransientRequest;
 
 /// A step that chooses itself, with all its values.
 struct AutomaticStep {
@@ -27,27 +29,13 @@ struct AutomaticStep {
 double positive_or(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
                    const numerics::Parameters& parameters);
 
-/// Sets first, smallest (1e-12 of the duration) and largest step of a plan whose controller is known. Throws
-/// InvalidInput where they contradict each other, or the controller `fixed` lacks the step that it keeps.
-/// @param title  heads the messages: "analysis \"run\": step: "   @param largest  [s]
-void plan_step_range(const std::string& title, const model::StepDescription& description,
-                     const numerics::Parameters& parameters, double duration, double largest,
-                     integrate::StepPlan& plan);
-
-/// Bounds the steps of a plan by what the loads swing, unless the study says how long they may be; warns where that is
-/// not known, and where the controller `fixed` keeps a step that is too long.
-void plan_swings(const model::StepDescription& description, const LoadSwings& swings, integrate::StepPlan& plan,
-                 std::vector<std::string>& warnings);
-
-/// Evaluates a description and checks that it can run on a system from `start`. Defaults: controller `pi`; estimator
-/// `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of the
-/// duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
+/// Evaluates the step of a description; method, start and duration are planned already. Defaults: controller `pi`;
+/// estimator `inertia_jump` for the controller `cardona_cassano`, else what suits the method; smallest step 1e-12 of
+/// the duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
 /// `allow_unstable`, the stability limit of the method; where formulas of loads swing, shorter. Throws InvalidInput at
 /// the place of the value.
-AutomaticStep plan_automatic_step(const std::string& analysis, const model::StepDescription& description,
-                                  const integrate::Method& method, const system::LocallyNonlinear& system,
-                                  const system::State& start, const numerics::Parameters& parameters, double duration,
-                                  bool allow_unstable, std::vector<std::string>& warnings);
+AutomaticStep plan_automatic_step(const TransientRequest& request, const TransientKind& kind,
+                                  const TransientPlan& transient, std::vector<std::string>& warnings);
 
 /// Streams every try of a step into the table `steps`: time, step, error and what became of it.
 class StepRecorder final : public integrate::TryLog {
@@ -70,6 +58,7 @@ std::string advice_on_smallest(const integrate::StepPlan& plan, double duration)
 std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticStep& step);
 
 /// What the march counted, for the results.
-std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report, double length);
+std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report,
+                                                            const TransientPlan& plan, double length);
 
 }  // namespace rubato::analysis

@@ -1,4 +1,4 @@
-#include <rubato/analysis/transient.hpp>
+#include <rubato/analysis/exact_transient.hpp>
 #include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
@@ -99,14 +99,6 @@ double default_interval(const system::LocallyNonlinear& system) {
 }
 
 }  // namespace
-
-void check_exact_transient(const Location& where, const system::LocallyNonlinear& system) {
-  try {
-    const integrate::ExactFlow flow(system);
-  } catch (const InvalidInput& fault) {
-    throw InvalidInput(where, fault.message());
-  }
-}
 
 RunReport run_exact_transient(const std::string& name, const TransientPlan& plan,
                               const system::LocallyNonlinear& system, RunContext& context) {

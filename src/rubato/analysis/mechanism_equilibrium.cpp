@@ -1,5 +1,6 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
-#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/analysis/mechanism_start_state.hpp>
+#include <rubato/analysis/observed.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/results/columns/beam_section_forces.hpp>
@@ -76,7 +77,7 @@ std::vector<std::string> check_mechanism_static(const std::string& name, const L
   refuse_displacements("analysis \"" + name + "\": ", description);
   std::vector<std::string> warnings;
   (void)assembled_start(where, mechanism, warnings, false);
-  (void)observed_or_all(description.observe, mechanism);
+  (void)observed_or_all(description.observe, {mechanism});
   (void)results::BeamSectionForces(mechanism, description.section_forces, "analysis \"" + name + "\": ");
   return warnings;
 }
@@ -97,7 +98,7 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
     report.status = RunStatus::failed;
     return report;
   }
-  const auto columns = results::columns_of_equilibrium(mechanism, observed_or_all(description.observe, mechanism),
+  const auto columns = results::columns_of_equilibrium(mechanism, observed_or_all(description.observe, {mechanism}),
                                                        description.section_forces, "analysis \"" + name + "\": ");
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   if (const std::string held = held_locks(found.state, mechanism, "\n"); !held.empty())

@@ -1,7 +1,8 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
-#include <rubato/analysis/mechanism_march.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
+#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_tables.hpp>
+#include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
@@ -70,10 +71,11 @@ MechanismModesPlan::Reached reached_by(const std::string& title, const model::Re
     known.push_back(analysis.name);
     if (analysis.name != description.analysis) continue;
     MechanismModesPlan::Reached reached;
-    reached.motion = plan_mechanism(analysis.name, analysis.where, *transient, mechanism, input.parameters);
+    reached.motion =
+        plan_transient(analysis.name, analysis.where, *transient, MechanismTransient(mechanism), input.parameters);
     reached.analysis = analysis.name;
     reached.settles = description.settles;
-    const double duration = reached.motion.transient.duration;
+    const double duration = reached.motion.duration;
     reached.time =
         description.time ? model::evaluate(*description.time, input.parameters, title + "about: time") : duration;
     if (!(reached.time >= 0.0 && reached.time <= duration))
@@ -112,28 +114,28 @@ class Listener final : public integrate::Observer {
 /// Marches to the configuration that is asked for, and holds it still. What went wrong stands in the report.
 system::State reach(const std::string& name, const MechanismModesPlan::Reached& reached,
                     const system::Mechanism& mechanism, RunContext& context, RunReport& report) {
-  MechanismMarch march(reached.motion, mechanism);
+  const auto march = MechanismTransient(mechanism).march(reached.motion);
   Listener listener(context);
   context.progress.begin(name, reached.time, "s of motion");
-  const integrate::AdaptiveReport marched = march.go_to(reached.time, &listener, nullptr);
-  context.progress.advance(march.state().t);
+  const integrate::AdaptiveReport marched = march->go_to(reached.time, &listener, nullptr);
+  context.progress.advance(march->state().t);
   context.progress.end();
   if (marched.march.end == integrate::MarchEnd::failed) {
     report.status = RunStatus::failed;
-    report.message = march.failure(marched);
-  } else if (march.state().t < reached.time) {
+    report.message = march->failure(marched.march);
+  } else if (march->state().t < reached.time) {
     report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted at t = {} s of {} s", march.state().t, reached.time);
+    report.message = fmt::format("interrupted at t = {} s of {} s", march->state().t, reached.time);
   }
-  if (!report.message.empty()) return march.state();
+  if (!report.message.empty()) return march->state();
   if (!reached.settles) {
-    system::State held = march.state();
+    system::State held = march->state();
     std::fill(held.rubbing.begin(), held.rubbing.end(), model::friction_free);
     warn_of_motion(held, mechanism, report.warnings);
     return at_rest(held, mechanism, report.warnings);
   }
   const StopScope scope(context.stop);
-  const MechanismStatic found = equilibrium_near(march.state(), mechanism);
+  const MechanismStatic found = equilibrium_near(march->state(), mechanism);
   report.message = with_friction_told(found.complaint(mechanism), mechanism);
   if (!report.message.empty()) report.status = RunStatus::failed;
   return found.state;
@@ -159,7 +161,7 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
                          fmt::format("{}count must be a whole number from 1 to {}, got {}", title, largest, count));
     plan.modes.count = static_cast<Index>(count);
   }
-  plan.modes.observed = observed_or_all(description.observe, mechanism);
+  plan.modes.observed = observed_or_all(description.observe, {mechanism});
   if (description.about_reached) {
     plan.reached = reached_by(title, *description.about_reached, mechanism, input);
     plan.warnings = plan.reached->motion.warnings;

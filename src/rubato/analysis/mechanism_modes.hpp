@@ -1,8 +1,8 @@
 #pragma once
 
-#include <rubato/analysis/mechanism_plan.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/study_input.hpp>
+#include <rubato/analysis/transient_plan.hpp>
 #include <rubato/system/mechanism.hpp>
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace rubato::analysis {
 struct MechanismModesPlan {
   /// The transient that leads there, which the analysis marches again.
   struct Reached {
-    MechanismPlan motion;
+    TransientPlan motion;
     std::string analysis;
     double time = 0.0;     ///< [s]
     bool settles = false;  ///< and on to the equilibrium next to it

@@ -1,19 +1,29 @@
+#include <rubato/analysis/load_checks.hpp>
+#include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_events.hpp>
-#include <rubato/analysis/mechanism_march.hpp>
+#include <rubato/analysis/mechanism_failure.hpp>
+#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
-#include <rubato/analysis/transient_observer.hpp>
-#include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
+#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/results/columns/beam_section_forces.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace rubato::analysis {
 namespace {
+
+constexpr double resolution = 1e-12;      // of events, over the duration
+constexpr double least_tolerance = 1e-9;  // below, steps measure what Newton's method leaves: see the known issues
+
+Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
 
 /// How far the motion drifts from its constraints and how far it goes, at the ends of the steps.
 class MotionWatch final : public integrate::Observer {
@@ -79,71 +89,180 @@ std::string warning_of_small_motion(double way, double size, const AutomaticStep
       way, step.tolerance, size, error, share, tolerance);
 }
 
+bool has_equal_steps(const TransientPlan& plan) {
+  return std::holds_alternative<integrate::FixedStep>(plan.automatic->plan.controller);
+}
+
+std::unique_ptr<integrate::Estimator> estimator_of(const TransientPlan& plan, const AutomaticStep& step,
+                                                   const system::Mechanism& mechanism) {
+  return integrate::make_estimator(step.estimator, std::get<integrate::GeneralizedAlpha>(plan.method.formula),
+                                   integrate::make_error_space(mechanism, plan.start, step.tolerance), plan.start,
+                                   plan.duration);
+}
+
+integrate::NewtonPlan newton_of(const TransientPlan& plan) {
+  const bool is_per_time = !std::holds_alternative<integrate::InertiaJump>(plan.automatic->estimator);
+  integrate::NewtonPlan newton;
+  newton.projects_velocities = plan.project_velocities || (is_per_time && !has_equal_steps(plan)) ||
+                               std::holds_alternative<integrate::PiControl>(plan.automatic->plan.controller);
+  newton.avoids_singular_ends = !has_equal_steps(plan);
+  return newton;
+}
+
+class MechanismMarch final : public TransientMarch {
+ public:
+  MechanismMarch(const TransientPlan& plan, const system::Mechanism& mechanism)
+      : plan_(plan),
+        mechanism_(mechanism),
+        stepper_(integrate::make_mechanism_stepper(plan.method, mechanism, newton_of(plan), plan.allow_unstable)),
+        estimator_(estimator_of(plan, *plan.automatic, mechanism)),
+        timeline_(mechanism, resolution * plan.duration),
+        balance_(mechanism),
+        watch_(plan.start, balance_.equations()),
+        state_(plan.start) {
+    if (!has_equal_steps(plan)) return;  // with steps that change it is carried over by the march
+    integrate::shift_acceleration(balance_.equations(), state_, stepper_->shift() * plan.automatic->plan.first);
+  }
+
+  const system::State& state() const override { return state_; }
+  integrate::Balance& balance() override { return balance_; }
+  std::vector<std::unique_ptr<integrate::EnergyPart>> energy_parts() override {
+    std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
+    parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance_, timeline_));
+    return parts;
+  }
+  results::ColumnGroups columns() override {
+    return results::columns_of_motion(balance_.equations(), plan_.observed, plan_.section_forces);
+  }
+  std::vector<double> kinks() const override { return timeline_.breakpoints(plan_.start.t, plan_.duration); }
+  integrate::Observer* listener() override { return &watch_; }
+  long steps_a_report() const override { return 64; }
+
+  integrate::AdaptiveReport go_to(double end, integrate::Observer* observer, integrate::TryLog* log) override {
+    return integrate::march(*stepper_, *estimator_, plan_.automatic->plan, timeline_, state_, end, observer, log);
+  }
+
+  std::string failure(const integrate::MarchReport& report) const override {
+    const AutomaticStep& step = *plan_.automatic;
+    const std::string advice =
+        !has_equal_steps(plan_) && step.tolerance < least_tolerance
+            ? fmt::format(
+                  "the tolerance {:.3g} is below {:.3g}, where the error of a step is what Newton's method leaves: "
+                  "take a larger one",
+                  step.tolerance, least_tolerance)
+            : advice_on_smallest(step.plan, plan_.duration);
+    return failure_of(report, mechanism_, state_, {timeline_.chattering(), timeline_.events()}, advice);
+  }
+
+  void conclude(const std::string& name, const integrate::AdaptiveReport& report, results::Sink& sink,
+                RunReport& run) const override {
+    write_events(name, plan_.start, timeline_.events(), mechanism_, sink);
+    run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", watch_.largest_drift()));
+    const std::string small =
+        warning_of_small_motion(watch_.largest_way(), estimator_->size(), *plan_.automatic, mechanism_);
+    if (!small.empty()) run.warnings.push_back(small);
+    if (has_equal_steps(plan_) && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
+      run.warnings.push_back(fmt::format(
+          "Newton's method failed in {} of the equal steps, and was given shorter ones from there to the next "
+          "event, the shortest of {:.3g} s: {} steps instead of {:.0f}; take a shorter step, or step = {{ "
+          "tolerance = 1e-4 }}",
+          report.failed, report.smallest_step, report.march.steps, plan_.automatic->expected_steps));
+    // The share of the run that the tolerance is; of equal steps, which are judged by nothing, a tenth of a step.
+    const double known =
+        has_equal_steps(plan_) ? 0.1 * plan_.automatic->plan.first : plan_.automatic->tolerance * plan_.duration;
+    report_events(timeline_.events(), mechanism_, known, run.findings);
+  }
+
+ private:
+  const TransientPlan& plan_;
+  const system::Mechanism& mechanism_;
+  std::unique_ptr<integrate::Stepper> stepper_;
+  std::unique_ptr<integrate::Estimator> estimator_;
+  integrate::MechanismTimeline timeline_;
+  integrate::MechanismBalance balance_;
+  MotionWatch watch_;
+  system::State state_;
+};
+
 }  // namespace
 
-RunReport run_mechanism(const std::string& name, const MechanismPlan& plan, const system::Mechanism& mechanism,
-                        RunContext& context) {
-  const TransientPlan& transient = plan.transient;
-  if (!plan.failure.empty()) {
-    RunReport failed;
-    failed.status = RunStatus::failed;
-    failed.message = plan.failure;
-    failed.warnings = plan.warnings;
-    return failed;
+void MechanismTransient::check(const TransientRequest& request, const TransientPlan& plan) const {
+  (void)results::BeamSectionForces(mechanism_, request.description.section_forces, request.title());
+  try {
+    (void)integrate::make_mechanism_stepper(plan.method, mechanism_, {}, plan.allow_unstable);
+  } catch (const InvalidInput& fault) {
+    throw InvalidInput(place(request.description.method.where, request.where), request.title() + fault.message());
   }
-  MechanismMarch march(plan, mechanism);
-  integrate::MechanismBalance balance(mechanism);
-  std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
-  parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance, march.timeline()));
-  integrate::EnergyLedger energy(std::move(parts));
-  integrate::EnergyLedger* const ledger = transient.energy ? &energy : nullptr;
-  TransientRecorder recorder(name, transient,
-                             results::columns_of_motion(balance.equations(), transient.observed, plan.section_forces),
-                             balance, ledger, context.sink);
-  MotionWatch watch(transient.start, balance.equations());
-  constexpr long steps_a_report = 64;
-  TransientObserver observer(transient, recorder, ledger,
-                             StepInterpolation(mechanism, balance, integrate::find_method(transient.method.name).order,
-                                               march.timeline().breakpoints(transient.start.t, transient.duration)),
-                             steps_a_report, context, &watch);
-  context.progress.begin(name, transient.duration, "s of motion");
-  observer.start(march.state());
-  std::unique_ptr<StepRecorder> tries;
-  if (!march.has_equal_steps()) tries = std::make_unique<StepRecorder>(name, *transient.automatic, context.sink);
-  const integrate::AdaptiveReport report = march.go_to(transient.duration, &observer, tries.get());
-  const system::State& state = march.state();
-  observer.finish(state);
-  context.progress.end();
-  write_events(name, transient.start, march.timeline().events(), mechanism, context.sink);
-  RunReport run;
-  run.statistics = statistics(report, state.t);
-  run.statistics.emplace_back("rows", std::to_string(recorder.rows()));
-  run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", watch.largest_drift()));
-  run.warnings = plan.warnings;
-  if (const std::string warning = warning_of(report, *transient.automatic); !warning.empty())
-    run.warnings.push_back(warning);
-  if (const std::string warning =
-          warning_of_small_motion(watch.largest_way(), march.error_size(), *transient.automatic, mechanism);
-      !warning.empty())
-    run.warnings.push_back(warning);
-  if (march.has_equal_steps() && report.failed > 0 && report.march.end != integrate::MarchEnd::failed)
-    run.warnings.push_back(fmt::format(
-        "Newton's method failed in {} of the equal steps, and was given shorter ones from there to the next "
-        "event, the shortest of {:.3g} s: {} steps instead of {:.0f}; take a shorter step, or step = {{ "
-        "tolerance = 1e-4 }}",
-        report.failed, report.smallest_step, report.march.steps, transient.automatic->expected_steps));
-  // The share of the run that the tolerance is; of equal steps, which are judged by nothing, a tenth of a step.
-  const double known = march.has_equal_steps() ? 0.1 * transient.automatic->plan.first
-                                               : transient.automatic->tolerance * transient.duration;
-  report_events(march.timeline().events(), mechanism, known, run.findings);
-  if (report.march.end == integrate::MarchEnd::failed) {
-    run.status = RunStatus::failed;
-    run.message = march.failure(report);
-  } else if (report.march.end == integrate::MarchEnd::stopped && state.t < transient.duration) {
-    run.status = RunStatus::interrupted;
-    run.message = fmt::format("interrupted at t = {} s of {} s", state.t, transient.duration);
+}
+
+void MechanismTransient::find_start(const TransientRequest& request, TransientPlan& plan) const {
+  const auto& initial = request.description.initial;
+  plan.start = assembled_start(request.where, mechanism_, plan.warnings, !initial);
+  if (initial) {
+    refuse_displacements(request.title(), *initial);
+    const MechanismStatic found = equilibrium_near(plan.start, mechanism_);
+    plan.failure = with_friction_told(found.complaint(mechanism_), mechanism_);
+    if (plan.failure.empty()) {
+      if (!found.is_stable)
+        plan.warnings.push_back(
+            "the equilibrium at the start is not stable: what moves from there begins with round-off");
+      plan.start = set_in_motion(request.where, mechanism_, found.state, plan.warnings);
+    } else {
+      plan.failure = "it has no static start: " + plan.failure;
+    }
   }
-  return run;
+  if (plan.failure.empty()) settle_start(request.where, mechanism_, plan.duration, plan.start);
+  warn_of_locks_behind(mechanism_, plan.start, plan.warnings);
+}
+
+void MechanismTransient::take_equal_steps(const TransientRequest& /*request*/, TransientPlan& plan) const {
+  AutomaticStep step;
+  step.asks_for_tolerance = false;
+  step.plan.controller = integrate::FixedStep{};
+  step.plan.first = step.plan.largest = plan.step;
+  step.plan.smallest = 1e-12 * plan.duration;
+  step.plan.locate_events = true;
+  step.estimator = integrate::LocalError{step.tolerance};
+  step.expected_steps = std::ceil(plan.duration / plan.step * (1.0 - 1e-12));
+  plan.automatic = step;
+}
+
+void MechanismTransient::plan_events(const std::string& title, const model::StepDescription& description,
+                                     const TransientPlan& /*plan*/, integrate::StepPlan& step) const {
+  if (description.locate_events && !*description.locate_events)
+    throw InvalidInput(description.where,
+                       title +
+                           "events = \"pass\" is for structures: a lock or a joint that sticks changes what the step "
+                           "solves, so that steps of mechanisms always end there; remove it");
+  if (description.reference_is_initial)
+    throw InvalidInput(description.where, title +
+                                              "reference = \"initial\" measures displacements, and configurations "
+                                              "of mechanisms have none; give a number, or leave it out");
+  step.locate_events = true;
+}
+
+void MechanismTransient::try_estimator(const TransientPlan& plan, const AutomaticStep& step) const {
+  (void)estimator_of(plan, step, mechanism_);
+}
+
+void MechanismTransient::check_loads(const TransientRequest& request, const TransientPlan& plan) const {
+  const auto check = [&](const auto& law, const char* remedies) {
+    const auto* table = std::get_if<model::TableLaw>(&law);
+    if (table && table->beyond == model::TableLaw::Beyond::error)
+      require_rows_to_reach(table->times, table->source, plan.duration, remedies, request.where);
+  };
+  const model::Mechanism& model = mechanism_.model();
+  constexpr const char* of_force = "\"zero\" or \"hold\"";
+  for (const auto& force : model.forces) check(force.law, of_force);
+  for (const auto& law : model.following_laws) check(law, of_force);
+  for (const auto& drive : model.drives) check(drive.law, "\"hold\"");
+  for (const auto& drive : model.drives)
+    if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))
+      refuse_jump(fmt::format("joint \"{}\": the drive", drive.name), *formula, plan.duration, request.where);
+}
+
+std::unique_ptr<TransientMarch> MechanismTransient::march(const TransientPlan& plan) const {
+  return std::make_unique<MechanismMarch>(plan, mechanism_);
 }
 
 }  // namespace rubato::analysis

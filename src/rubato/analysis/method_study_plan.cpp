@@ -114,7 +114,7 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
   if (std::abs(count - std::round(count)) > 1e-9 * count)
     throw InvalidInput(study.step.where, fmt::format("{}the duration {} s must be a multiple of the step {} s", title,
                                                      plan.duration, plan.step));
-  plan.observed = study.observe ? observed_of(*study.observe, system)
+  plan.observed = study.observe ? observed_of(*study.observe, {system, system.supports()})
                                 : Observed{system.coordinates().front(), 0, ground, system.is_rotation(0)};
   if (study.methods.empty())
     take_all_methods(plan, system);

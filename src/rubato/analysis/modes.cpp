@@ -177,7 +177,7 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
                                      "modes, {}",
                                      title, count, n, n / 3));
   }
-  plan.observed = observed_or_all(description.observe, system);
+  plan.observed = observed_or_all(description.observe, {system, system.supports()});
   return plan;
 }
 

@@ -90,7 +90,7 @@ RunReport run_static(const std::string& name, const Location& where, const model
                      const system::LocallyNonlinear& system, RunContext& context) {
   const StaticEquilibrium found = equilibrium_of(name, where, description, system);
   const std::vector<model::Held> held = held_of("", description, system);
-  results::ObservedColumns observed(observed_or_all(description.observe, system),
+  results::ObservedColumns observed(observed_or_all(description.observe, {system, system.supports()}),
                                     {results::ObservedColumns::Quantity::position});
   results::SliderColumns sliders(system);
   results::StopColumns stops(system);

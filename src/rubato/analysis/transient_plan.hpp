@@ -1,10 +1,9 @@
 #pragma once
 
 #include <rubato/analysis/automatic_step.hpp>
+#include <rubato/analysis/observed.hpp>
 #include <rubato/integrate/method.hpp>
 #include <rubato/model/description.hpp>
-#include <rubato/results/columns/observed_columns.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
 
 #include <optional>
 #include <string>
@@ -12,13 +11,12 @@
 
 namespace rubato::analysis {
 
-using results::Observed;
-
 /// A transient with all its values: what the description says, evaluated and found possible.
 struct TransientPlan {
   integrate::Method method;
-  system::State start;  ///< that of the system, or of equilibrium
-  double step = 0.0;    ///< [s]; 0 for `exact` and for an automatic step
+  system::State start;  ///< that of the system, or of equilibrium; on the constraints
+  double step = 0.0;    ///< of equal steps [s]; 0 for `exact` and for steps that choose themselves
+  /// How the march picks its steps; empty: they are equal, and nothing is located.
   std::optional<AutomaticStep> automatic;
   double duration = 0.0;  ///< [s]
   std::vector<Observed> observed;
@@ -27,8 +25,14 @@ struct TransientPlan {
   double interval = 0.0;      ///< [s]
   std::vector<double> times;  ///< rising [s]
   bool energy = true;
-  double rows = 0.0;                       ///< expected number of rows
-  std::vector<std::string> warnings = {};  ///< of steps that may not see what a load does
+  bool allow_unstable = false;
+  bool project_velocities = false;
+  model::SectionForcesDescription section_forces;
+  double rows = 0.0, columns = 0.0;  ///< expected numbers
+  /// Of what the start took (parts that moved, constraints that repeat others), and of steps that may not see what a
+  /// load does.
+  std::vector<std::string> warnings = {};
+  std::string failure;  ///< why the equilibrium to start from was not found: the analysis fails; empty: nothing did
 };
 
 /// What is wrong with a transient without a step.
@@ -38,29 +42,27 @@ inline constexpr const char* missing_step =
 /// The method that a description names, with the values of its parameters. Throws InvalidInput at its place.
 integrate::Method method_of(const model::MethodDescription& description, const numerics::Parameters& parameters);
 
-/// Evaluates where rows are wanted and how many that makes; method, step and duration are planned already. Throws
-/// InvalidInput.
-void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
-                 const Location& where);
+/// What a study asks of a transient, and where it says so.
+struct TransientRequest {
+  const std::string& name;
+  const Location& where;
+  const model::TransientDescription& description;
+  const numerics::Parameters& parameters;
 
-/// Whether supports that move count among the coordinates, after the free ones, as in MovingSupports.
-enum class Supports { left_out, observed };
+  /// Heads the messages.
+  std::string title() const { return "analysis \"" + name + "\": "; }
+};
 
-/// Looks up a coordinate or a difference. Throws InvalidInput at its place, with the nearest name.
-Observed observed_of(const model::ObservationDescription& description, const system::LocallyNonlinear& system,
-                     Supports supports = Supports::left_out);
-
-/// Every coordinate of a system, in its order.
-std::vector<Observed> every_coordinate(const system::System& system);
-
-/// What is asked for, or every coordinate: displacements, then rotations.
-std::vector<Observed> observed_or_all(const std::optional<std::vector<model::ObservationDescription>>& wanted,
-                                      const system::LocallyNonlinear& system, Supports supports = Supports::left_out);
+class TransientKind;
 
 /// Evaluates a description and checks that it can run: values in their ranges, names known, tables that reach over the
-/// whole run, and a step below the stability limit of the model unless `allow_unstable`. Throws InvalidInput.
+/// whole run, and what the kind of system asks. Throws InvalidInput. Where no equilibrium to start from is found the
+/// plan says so.
 TransientPlan plan_transient(const std::string& name, const Location& where,
-                             const model::TransientDescription& description, const system::LocallyNonlinear& system,
+                             const model::TransientDescription& description, const TransientKind& kind,
                              const numerics::Parameters& parameters);
+
+/// "transient, generalized_alpha, 12000 steps of 0.005 s to t = 60 s"
+std::string summary(const TransientPlan& plan);
 
 }  // namespace rubato::analysis

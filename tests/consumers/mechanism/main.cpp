@@ -58,13 +58,14 @@ int main() {
   const rubato::system::Mechanism mechanism(rubato::model::build_mechanism(study.model, parameters));
   const auto& analysis = study.analyses.front();
   const auto& transient = std::get<rubato::model::TransientDescription>(analysis.task);
-  const auto plan = rubato::analysis::plan_mechanism(analysis.name, analysis.where, transient, mechanism, parameters);
+  const rubato::analysis::MechanismTransient motion(mechanism);
+  const auto plan = rubato::analysis::plan_transient(analysis.name, analysis.where, transient, motion, parameters);
 
   LastRow sink;
   Silent progress;
   const std::atomic<bool> stop{false};
   rubato::analysis::RunContext context{sink, progress, stop};
-  const auto report = rubato::analysis::run_mechanism(analysis.name, plan, mechanism, context);
+  const auto report = motion.run(analysis.name, plan, context);
   if (report.status != rubato::analysis::RunStatus::done || sink.row.size() < 3) {
     std::printf("%s\n", report.message.c_str());
     return 1;
