@@ -1,5 +1,5 @@
 #include <rubato/analysis/mechanism_equilibrium.hpp>
-#include <rubato/analysis/mechanism_plan.hpp>
+#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/build_mechanism.hpp>
 
