@@ -41,7 +41,7 @@ system::LocallyNonlinear rich_model(bool couples_modes) {
 PeriodRecord march(PeriodMap& map, const system::LocallyNonlinear& system, const Excitation& excitation, int steps,
                    int periods) {
   std::vector<PeriodRecord> records(1);
-  records[0].reset(system.size(), system.slider_count(), static_cast<Index>(steps) * periods, true, true);
+  records[0].reset(system.size(), system, static_cast<Index>(steps) * periods, true, true);
   EXPECT_TRUE(map.prepare({&excitation, 1}, steps));
   LaneArray now = LaneArray::Zero(map.size(), 1), next;
   map.encode(system.start(), now, 0);

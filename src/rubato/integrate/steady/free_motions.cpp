@@ -24,7 +24,7 @@ Matrix kernel_of(const Matrix& map, const Matrix& motions) {
 }
 
 Matrix free_motions(const system::LocallyNonlinear& system, const Matrix& rigid) {
-  const Index n = system.size(), contacts = system.slider_count() + system.stop_count();
+  const Index n = system.size(), contacts = system.contact_count();
   if (rigid.cols() == 0) return Matrix(n, 0);
   const double damping = std::max(system.damping().norm(), std::numeric_limits<double>::min());
   Matrix resisted(contacts + n, rigid.cols());

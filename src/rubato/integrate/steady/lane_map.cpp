@@ -239,8 +239,8 @@ std::unique_ptr<PeriodMap> make_lane_map(const Method& method, const system::Loc
                                          const SteadyRequest& request) {
   if (!std::holds_alternative<GeneralizedAlpha>(method.formula) && !std::holds_alternative<Exponential>(method.formula))
     return nullptr;
-  if (system.stop_count() > 0 || system.size() > largest_lane_model || system.slider_count() > largest_lane_model)
-    return nullptr;
+  if (system.stop_count() > 0 || system.law_count() > 0) return nullptr;
+  if (system.size() > largest_lane_model || system.slider_count() > largest_lane_model) return nullptr;
   return std::make_unique<LaneMap>(method, system, request);
 }
 

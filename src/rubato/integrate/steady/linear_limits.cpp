@@ -17,12 +17,12 @@ ComplexVector solve(const SparseMatrix& stiffness, const system::LocallyNonlinea
                     const ComplexVector& load) {
   const std::complex<double> i_omega(0.0, angular_frequency), square(-angular_frequency * angular_frequency, 0.0);
   if (system.size() <= largest_dense) {
-    const ComplexMatrix dynamic = Matrix(stiffness).cast<std::complex<double>>() + i_omega * Matrix(system.damping()) +
-                                  square * Matrix(system.mass());
+    const ComplexMatrix dynamic = Matrix(stiffness).cast<std::complex<double>>() +
+                                  i_omega * Matrix(system.free_damping()) + square * Matrix(system.mass());
     return dynamic.partialPivLu().solve(load);
   }
   SparseComplex dynamic = stiffness.cast<std::complex<double>>();
-  dynamic += i_omega * system.damping().cast<std::complex<double>>();
+  dynamic += i_omega * system.free_damping().cast<std::complex<double>>();
   dynamic += square * system.mass().cast<std::complex<double>>();
   const Eigen::SparseLU<SparseComplex> factor(dynamic);
   if (factor.info() != Eigen::Success) return ComplexVector::Constant(load.size(), std::nan(""));
@@ -57,6 +57,21 @@ LinearResponse linear_response(const SparseMatrix& stiffness, const system::Loca
 
 }  // namespace
 
+system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system) {
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = system.mass();
+  parts.damping = system.free_damping();
+  parts.stiffness = system.free_stiffness();
+  parts.sliders = system.sliders();
+  parts.stops = system.stops();
+  parts.loads = system.loads();
+  parts.start.q = system.start().q;
+  parts.start.v = system.start().v;
+  parts.coordinates = system.coordinates();
+  parts.reference = system.reference();
+  return system::LocallyNonlinear(std::move(parts));
+}
+
 system::State nearer_linear_limit(const system::LocallyNonlinear& system, const Excitation& excitation) {
   const Index m = system.slider_count();
   system::State state = system.start();
@@ -64,9 +79,12 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
   state.q.setZero();
   state.v.setZero();
   state.slider_force.setZero();
+  state.memory.setZero();
+  system.set_law_forces(state, model::Side::right);
+  const system::State at_rest = state;
   LinearResponse response = linear_response(system.stuck_stiffness(), system, excitation);
   if (!response.q.allFinite() || !(response.forces.array() <= 2.0 * excitation.limits.array()).all())
-    response = linear_response(system.stiffness(), system, excitation);
+    response = linear_response(system.free_stiffness(), system, excitation);
   if (!response.q.allFinite() || !response.v.allFinite()) return state;
   state.q = response.q;
   state.v = response.v;
@@ -74,6 +92,7 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
     state.slider_force[i] =
         std::clamp(system.sliders()[static_cast<std::size_t>(i)].stiffness * system.relative_displacement(i, state.q),
                    -excitation.limits[i], excitation.limits[i]);
+  system.move_laws(at_rest, state);
   return state;
 }
 

@@ -1,5 +1,6 @@
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/steady/fourier_series.hpp>
+#include <rubato/integrate/steady/linear_limits.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 
 #include <algorithm>
@@ -31,7 +32,10 @@ double largest_of(const ComplexVector& x) { return x.size() > 0 ? x.cwiseAbs().m
 
 LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSliders stuck, SteadyRequest request,
                                const LinearSweep& sweep)
-    : system_(system), stuck_(std::move(stuck)), request_(std::move(request)), stiffness_(system_, stuck_) {
+    : system_(system.law_count() > 0 ? with_linear_laws(system) : system),
+      stuck_(std::move(stuck)),
+      request_(std::move(request)),
+      stiffness_(system_, stuck_) {
   const bool is_worth_it = sweep.points >= least_points && system_.size() > direct_size &&
                            stiffness_.fill() > direct_fill && sweep.highest > 0.0;
   if (!is_worth_it) return;

@@ -22,8 +22,9 @@ struct LinearSweep {
 ///
 ///   (K - (k omega)^2 M + i k omega C) x_k = f_k,   K x_0 = constant
 ///
-/// with K of the stuck sliders included. With all sliders stuck or none these are the two limits between which friction
-/// works. Limits and start of an excitation mean nothing here: a stuck slider keeps offset zero.
+/// with K of the stuck sliders included; other laws enter with their slopes at rest. With all sliders stuck or none
+/// these are the two limits between which friction works. Limits and start of an excitation mean nothing here: a stuck
+/// slider keeps offset zero.
 ///
 /// A resonance without damping (within the round-off of the matrices) has the status `unbounded`: amplitudes and
 /// harmonics of what resonates are infinite, phases are no numbers. So is a static load on a body that nothing holds.

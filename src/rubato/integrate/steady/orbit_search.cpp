@@ -1,6 +1,7 @@
 #include <rubato/integrate/steady/orbit_search.hpp>
 
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/steady/free_motions.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <Eigen/LU>
@@ -169,11 +170,26 @@ double take_back_drift(const PeriodMap& map, const Matrix& rigid, const Vector& 
 
 }  // namespace
 
+namespace {
+
+/// Those of the motions that leave every law where it is.
+Matrix not_seen_by_laws(const system::LocallyNonlinear& system, const Matrix& motions) {
+  Matrix seen(system.law_count(), motions.cols());
+  for (Index k = 0; k < motions.cols(); ++k)
+    for (Index j = 0; j < seen.rows(); ++j)
+      seen(j, k) = system.relative_displacement(system.first_law() + j, motions.col(k));
+  return kernel_of(seen, motions);
+}
+
+}  // namespace
+
 Matrix rigid_motions(PeriodMap& map, const system::LocallyNonlinear& system) {
   Matrix motions(map.size(), 0);
   if (system.size() > largest_rigid || system.slider_count() == 0) return motions;
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
-  const Index count = (modes.eigenvalues.array() == 0.0).count();
+  Matrix shapes = modes.shapes.leftCols((modes.eigenvalues.array() == 0.0).count());
+  if (system.law_count() > 0 && shapes.cols() > 0) shapes = not_seen_by_laws(system, shapes);
+  const Index count = shapes.cols();
   if (count == 0) return motions;
   motions.resize(map.size(), count);
   LaneArray states(map.size(), 1);
@@ -181,7 +197,7 @@ Matrix rigid_motions(PeriodMap& map, const system::LocallyNonlinear& system) {
   map.encode(state, states, 0);
   const Vector origin = states.col(0);
   for (Index k = 0; k < count; ++k) {
-    state.q = system.start().q + modes.shapes.col(k);
+    state.q = system.start().q + shapes.col(k);
     map.encode(state, states, 0);
     motions.col(k) = states.col(0).matrix() - origin;
   }

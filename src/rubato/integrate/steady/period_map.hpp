@@ -17,7 +17,8 @@ using LaneArray = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 ///
 ///   x = (q, v / omega, slip, A / omega^2),   slip = u - fc / kT,
 ///
-/// in physical or other coordinates of the structure, A where the method carries it.
+/// in physical or other coordinates of the structure, A where the method carries it. What other laws remember stands
+/// behind the slips, and counts among them.
 class PeriodMap {
  public:
   virtual ~PeriodMap() = default;

@@ -66,7 +66,9 @@ void read_sliders(const PeriodRecord& record, const Excitation& excitation, cons
 
 }  // namespace
 
-void PeriodRecord::reset(Index observed, Index sliders, Index wanted, bool accelerations, bool works) {
+void PeriodRecord::reset(Index observed, const system::LocallyNonlinear& system, Index wanted, bool accelerations,
+                         bool works) {
+  const Index sliders = system.slider_count();
   has_works = works;
   steps = wanted;
   position.resize(observed, wanted + 1);
@@ -74,6 +76,7 @@ void PeriodRecord::reset(Index observed, Index sliders, Index wanted, bool accel
   acceleration.resize(accelerations ? observed : 0, wanted + 1);
   slider_force.resize(sliders, wanted + 1);
   displacement.resize(sliders, wanted + 1);
+  law_work.setZero(system.law_count());
   viscous_work = input_work = 0.0;
 }
 
@@ -180,6 +183,7 @@ void read_record(const PeriodRecord& record, const Excitation& excitation, const
     response.harmonics.col(static_cast<Index>(k)) *= 2.0 / static_cast<double>(steps);
   }
   read_sliders(record, excitation, slider_stiffness, periods, response);
+  response.law_dissipated = record.law_work / periods;
   response.viscous_work = record.viscous_work / periods;
   response.input_work = record.input_work / periods;
 }

@@ -6,13 +6,14 @@ namespace rubato::integrate {
 
 /// What a march writes down on its way over one or more periods: S + 1 samples at equal times, both ends included.
 struct PeriodRecord {
-  /// Makes room for `steps` steps. Accelerations and works may stay unwanted.
-  void reset(Index observed, Index sliders, Index steps, bool accelerations, bool works);
+  /// Makes room for `steps` steps of a structure. Accelerations and works may stay unwanted.
+  void reset(Index observed, const system::LocallyNonlinear& system, Index steps, bool accelerations, bool works);
 
   bool has_works = true;
   Index steps = 0;                              ///< S
   Matrix position, velocity, acceleration;      ///< of each observed [o x S+1] [m], [m/s], [m/s2]
   Matrix slider_force, displacement;            ///< fc and u of each slider [m x S+1] [N], [m]
+  Vector law_work;                              ///< dissipated by each law [laws] [J]
   double viscous_work = 0.0, input_work = 0.0;  ///< sums of C v . dq and f . dq, means of both ends of each step [J]
 };
 

@@ -39,7 +39,7 @@ class WindowMarch {
 
   /// False if a step failed.
   bool advance() {
-    record_.reset(static_cast<Index>(request_.observed.size()), system_.slider_count(), steps_, request_.rates, true);
+    record_.reset(static_cast<Index>(request_.observed.size()), system_, steps_, request_.rates, true);
     writer_.write(now_, record_, 0, false);
     const double h = window_ / steps_;
     for (int j = 0; j < steps_; ++j) {

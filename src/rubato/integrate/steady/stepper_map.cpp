@@ -24,6 +24,25 @@ system::LoadTerm term_of(const Vector& weights, double angular_frequency, double
   return term;
 }
 
+/// How far a law moves by a unit of each number of its memory: the change of its force over its stiffness, where
+/// nothing has moved yet. Numbers that show neither there count as lengths.
+Vector memory_lengths(const system::LocallyNonlinear& system) {
+  Vector lengths = Vector::Ones(system.memory_size());
+  for (Index j = 0; j < system.law_count(); ++j) {
+    const model::Law& law = *system.laws()[static_cast<std::size_t>(j)].law;
+    Vector memory = Vector::Zero(law.memory_size());
+    const model::LawAnswer at_rest = law.at({}, memory.data());
+    for (Index i = 0; i < memory.size(); ++i) {
+      constexpr double small = 1e-6;
+      memory[i] = small;
+      const double length = std::abs((law.at({}, memory.data()).force - at_rest.force) / (small * at_rest.by_u));
+      memory[i] = 0.0;
+      if (length > 0.0 && std::isfinite(length)) lengths[system.memory_of(j) + i] = length;
+    }
+  }
+  return lengths;
+}
+
 class StepperMap final : public PeriodMap {
  public:
   StepperMap(const Method& method, const system::LocallyNonlinear& system, const SteadyRequest& request)
@@ -32,14 +51,16 @@ class StepperMap final : public PeriodMap {
         request_(request),
         n_(system.size()),
         m_(system.slider_count()),
+        memory_(system.memory_size()),
         carries_acceleration_(std::holds_alternative<GeneralizedAlpha>(method.formula) ||
                               std::holds_alternative<WilsonTheta>(method.formula)),
+        memory_length_(memory_lengths(system)),
         from_(system.start()),
         to_(system.start()) {}
 
-  Index size() const override { return (carries_acceleration_ ? 3 : 2) * n_ + m_; }
+  Index size() const override { return (carries_acceleration_ ? 3 : 2) * n_ + m_ + memory_; }
   Index slip_start() const override { return 2 * n_; }
-  Index slips() const override { return m_; }
+  Index slips() const override { return m_ + memory_; }
   Index lanes() const override { return 1; }
 
   bool prepare(std::span<const Excitation> excitations, int steps) override {
@@ -99,8 +120,8 @@ class StepperMap final : public PeriodMap {
     const Matrix inverse = resolvent_of_power(step, steps_);
     if (inverse.size() == 0) return {};
     Matrix update = Matrix::Identity(size(), size());
-    // In a state the slips stand between v and A.
-    const auto row_of = [&](Index i) { return i < 2 * n_ ? i : i + m_; };
+    // In a state the slips and the memory stand between v and A.
+    const auto row_of = [&](Index i) { return i < 2 * n_ ? i : i + slips(); };
     for (Index j = 0; j < inverse.cols(); ++j)
       for (Index i = 0; i < inverse.rows(); ++i) update(row_of(i), row_of(j)) = inverse(i, j);
     return update;
@@ -113,7 +134,8 @@ class StepperMap final : public PeriodMap {
     x.segment(n_, n_) = state.v / omega_;
     for (Index i = 0; i < m_; ++i)
       x[2 * n_ + i] = system_->relative_displacement(i, state.q) - state.slider_force[i] / stiffness(i);
-    if (carries_acceleration_) x.segment(2 * n_ + m_, n_) = state.auxiliary_acceleration / (omega_ * omega_);
+    x.segment(2 * n_ + m_, memory_) = state.memory.cwiseProduct(memory_length_);
+    if (carries_acceleration_) x.segment(2 * n_ + slips(), n_) = state.auxiliary_acceleration / (omega_ * omega_);
   }
 
   // A state that an extrapolation has put beyond a limit slips back to it.
@@ -128,7 +150,9 @@ class StepperMap final : public PeriodMap {
       from_.slider_force[i] = std::clamp(trial, -limit, limit);
     }
     system_->set_stop_forces(from_);
-    if (carries_acceleration_) from_.auxiliary_acceleration = omega_ * omega_ * x.segment(2 * n_ + m_, n_);
+    from_.memory = x.segment(2 * n_ + m_, memory_).matrix().cwiseQuotient(memory_length_);
+    system_->set_law_forces(from_, model::Side::right);
+    if (carries_acceleration_) from_.auxiliary_acceleration = omega_ * omega_ * x.segment(2 * n_ + slips(), n_);
   }
 
   // The step without sliders and loads on unit states.
@@ -165,13 +189,14 @@ class StepperMap final : public PeriodMap {
   Method method_;
   const system::LocallyNonlinear& structure_;
   const SteadyRequest& request_;
-  Index n_, m_;
+  Index n_, m_, memory_;
   bool carries_acceleration_;
   double omega_ = 1.0, period_ = 1.0;
   int steps_ = 1;
   std::optional<system::LocallyNonlinear> system_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<RecordWriter> writer_;
+  Vector memory_length_;
   system::State from_, to_;
 };
 
@@ -197,6 +222,14 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
   for (Index i = 0; i < system_.slider_count(); ++i)
     record.displacement(i, column) = system_.relative_displacement(i, state.q);
   if (!record.has_works) return;
+  for (Index j = 0; j < system_.law_count(); ++j) {
+    const model::Law& law = *system_.laws()[static_cast<std::size_t>(j)].law;
+    const Index place = system_.memory_of(j);
+    if (adds_work)
+      record.law_work[j] += law.dissipated(system_.law_point(j, last_, model::Side::right), last_.memory.data() + place,
+                                           system_.law_point(j, state, model::Side::left), state.memory.data() + place);
+  }
+  if (system_.law_count() > 0) last_ = state;
   product_.noalias() = system_.damping() * state.v;
   loads_.evaluate(state.t, force_);
   if (adds_work) {
@@ -218,6 +251,7 @@ system::LocallyNonlinear with_excitation(const system::LocallyNonlinear& system,
   for (std::size_t i = 0; i < parts.sliders.size(); ++i)
     parts.sliders[i].limit = excitation.limits[static_cast<Index>(i)];
   parts.stops = system.stops();
+  parts.laws = system.laws();
   parts.start = system.start();
   parts.coordinates = system.coordinates();
   std::vector<system::LoadTerm> terms;

@@ -25,9 +25,10 @@ double observe(const SteadyRequest::Observed& observed, const Motion& motion) {
 
 /// Writes samples of a march into a record, and adds up the works of its steps:
 ///
-///   dampers (C v0 + C v1)/2 . dq,   loads (f0 + f1)/2 . dq
+///   dampers (C v0 + C v1)/2 . dq,   loads (f0 + f1)/2 . dq,   laws by their own formula
 ///
-/// which close the balance of energy to round-off for average acceleration (see the ledger of transient runs).
+/// of which the first two close the balance of energy to round-off for average acceleration (see the ledger of
+/// transient runs).
 class RecordWriter {
  public:
   RecordWriter(const system::LocallyNonlinear& system, const SteadyRequest& request);
@@ -39,6 +40,7 @@ class RecordWriter {
   const SteadyRequest& request_;
   system::EquilibriumAcceleration equilibrium_;
   system::Loads loads_;
+  system::State last_;  // written last, of a system with laws
   Vector acceleration_, travel_, product_, force_, last_q_, last_product_, last_force_;
 };
 

@@ -28,7 +28,7 @@ constexpr double aim = 0.7;
 // that drifts may have been led to a speed beside which what a period adds is nothing.
 void find_unbounded(const system::LocallyNonlinear& system, std::span<const Excitation> excitations,
                     const SteadyRequest& request, std::span<SteadyResponse> responses) {
-  if (system.stop_count() > 0) return;  // stops may bound the motion
+  if (system.stop_count() > 0 || system.law_count() > 0) return;  // they may bound the motion
   std::optional<UndampedResonance> resonance;
   for (std::size_t l = 0; l < responses.size(); ++l) {
     if (is_repeating(responses[l].status) && responses[l].status != SteadyStatus::drifting) continue;
@@ -210,7 +210,7 @@ Waveform TimeMarchingSolver::waveform(int points) const {
   map->prepare({&place.excitation, 1}, steps);
   std::vector<PeriodRecord> records(1);
   PeriodRecord& record = records[0];
-  record.reset(n, m, steps, true, false);
+  record.reset(n, system_, steps, true, false);
   LaneArray after;
   map->advance(place.state.array(), after, &records, 0);
   const double period = place.excitation.period(), step = period / steps;

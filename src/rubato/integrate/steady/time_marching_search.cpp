@@ -50,8 +50,10 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excita
   search.tolerance = options_.periodicity;
   search.max_periods = options_.max_periods;
   search.rigid = engine.rigid;
-  // Between stops a motion that repeats may be unstable, and an extrapolation finds it as readily as one that lasts.
-  const bool extrapolates = options_.extrapolates && start != SteadyStart::rest && system_.stop_count() == 0;
+  // Between stops or springs that are not linear a motion that repeats may be unstable, and an extrapolation finds it
+  // as readily as one that lasts.
+  const bool extrapolates =
+      options_.extrapolates && start != SteadyStart::rest && system_.stop_count() == 0 && system_.law_count() == 0;
   const SteadyRequest& request = is_full ? request_ : amplitudes_;
   engine.records.resize(excitations.size());
   for (SteadyResponse& response : responses) response.iterations = 0;
@@ -68,7 +70,7 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const Excitation> excita
       response.iterations += orbit.marched;
       response.periods = orbit.status == SteadyStatus::quasi_periodic ? quasi_periodic_window : orbit.multiple;
       longest = std::max(longest, response.periods);
-      engine.records[l].reset(static_cast<Index>(request.observed.size()), system_.slider_count(),
+      engine.records[l].reset(static_cast<Index>(request.observed.size()), system_,
                               static_cast<Index>(response.periods) * steps, request.rates, is_full);
     }
     LaneArray now = states, next;
