@@ -1,6 +1,8 @@
 #include <rubato/integrate/steady/condensed_structure_routes.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace rubato::integrate {
 namespace {
@@ -11,28 +13,45 @@ constexpr double full = 0.05;           // part of C that is not zero, from whic
 
 // kT, or what the structure itself has at the ends of the slider, or anywhere: stiffer springs would take the digits of
 // the rest of Z.
-double holding_stiffness_of(const model::Slider& slider, const Vector& diagonal) {
+double holding_stiffness_of(const system::LocallyNonlinear::Ends& ends, double stiffness, const Vector& diagonal) {
   double of_structure = 0.0;
-  for (const Index end : {slider.first, slider.second})
+  for (const Index end : {ends.first, ends.second})
     if (end != ground) of_structure = std::max(of_structure, diagonal[end]);
   if (!(of_structure > 0.0) && diagonal.size() > 0) of_structure = diagonal.maxCoeff();
-  return of_structure > 0.0 ? std::min(slider.stiffness, of_structure) : slider.stiffness;
+  return of_structure > 0.0 ? std::min(stiffness, of_structure) : stiffness;
+}
+
+// That of a law which does not resist at rest: any will do.
+double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index law, const Vector& diagonal) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Vector memory = Vector::Zero(system.memory_size());
+  const double at_rest =
+      system.laws()[static_cast<std::size_t>(law)].law->at({}, memory.data() + system.memory_of(law)).by_u;
+  const auto& ends = system.contacts()[static_cast<std::size_t>(system.first_law() + law)];
+  const double held = holding_stiffness_of(ends, at_rest > 0.0 ? at_rest : infinity, diagonal);
+  return std::isfinite(held) ? held : 1.0;
 }
 
 }  // namespace
 
 CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
                                        const std::vector<SteadyRequest::Observed>& observed) {
-  const Index n = system.size(), m = system.slider_count();
+  const Index n = system.size(), sliders = system.slider_count(), m = sliders + system.law_count();
   columns_ =
       std::make_unique<Columns>(Columns{system, Vector(m), Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
   const Vector diagonal = system.stiffness().diagonal();
   for (Index i = 0; i < m; ++i) {
-    const auto& slider = system.sliders()[static_cast<std::size_t>(i)];
-    columns_->slider_stiffness[i] = slider.stiffness;
-    if (slider.first != ground) columns_->sliders(slider.first, i) += 1.0;
-    if (slider.second != ground) columns_->sliders(slider.second, i) -= 1.0;
-    columns_->holding_stiffness[i] = holding_stiffness_of(slider, diagonal);
+    const Index contact = i < sliders ? i : system.first_law() + i - sliders;
+    const auto& ends = system.contacts()[static_cast<std::size_t>(contact)];
+    if (ends.first != ground) columns_->sliders(ends.first, i) += 1.0;
+    if (ends.second != ground) columns_->sliders(ends.second, i) -= 1.0;
+    if (i < sliders) {
+      columns_->slider_stiffness[i] = system.sliders()[static_cast<std::size_t>(i)].stiffness;
+      columns_->holding_stiffness[i] = holding_stiffness_of(ends, columns_->slider_stiffness[i], diagonal);
+    } else {
+      columns_->slider_stiffness[i] = columns_->holding_stiffness[i] =
+          holding_stiffness_of_law(system, i - sliders, diagonal);
+    }
   }
   const auto entries = static_cast<double>(system.damping().nonZeros());
   const bool is_small = n <= most_dense || entries > full * static_cast<double>(n) * static_cast<double>(n);

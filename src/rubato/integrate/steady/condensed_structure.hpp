@@ -6,14 +6,15 @@
 
 namespace rubato::integrate {
 
-/// A linear structure seen through a few columns P = [B | E | O]: the directions of the sliders, the patterns of the
-/// loads and the observed coordinates.
+/// A linear structure seen through a few columns P = [B | E | O]: the directions of the sliders and of other laws, the
+/// patterns of the loads and the observed coordinates. All of the former are called sliders here: what their forces are
+/// does not matter.
 ///
 ///   G(w) = P^T Z(w)^-1 P,   Z(w) = K + held sum of h b b^T - w^2 M + i w C        (b: the columns of B)
 ///
 /// With held = 0 this is the structure without its sliders. Springs h in their place keep G finite where the structure
-/// alone is in resonance, or not held at all (w = 0): those of the sliders, but none stiffer than the structure, so
-/// that Z keeps its digits beside rigid contacts.
+/// alone is in resonance, or not held at all (w = 0): those of the sliders (of laws at rest), but none stiffer than the
+/// structure, so that Z keeps its digits beside rigid contacts.
 ///
 /// Routes: real modes where they diagonalise C; the state-space modes (complex) of a small structure where they form a
 /// basis; else a factorisation of Z for each w, sparse for large structures. Where the structure is in resonance the

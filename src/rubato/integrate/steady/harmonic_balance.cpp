@@ -28,14 +28,29 @@ constexpr double caution = 2.0;
 // The orders a step adds: enough to pay for solving again.
 int more(int count) { return count + std::max(1, count / 2); }
 
+// Samples of laws: some for each of the orders, and so many that what they change takes this share of the tolerance.
+constexpr int most_samples = 1 << 14;
+constexpr double share_of_samples = 0.1;
+int samples_for(const Orders& orders, int wanted) {
+  int samples = 128;
+  while (samples < 8 * (orders.highest() + 4)) samples *= 2;
+  return std::max(samples, wanted);
+}
+
 }  // namespace
 
 HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonlinear& s, SteadyRequest r,
                                                       HarmonicBalanceOptions o)
-    : system(s), request(std::move(r)), options(o), structure(s, request.observed), patterns(s.size(), 0) {
-  stiffness.resize(s.slider_count());
-  for (Index j = 0; j < stiffness.size(); ++j) stiffness[j] = s.sliders()[static_cast<std::size_t>(j)].stiffness;
-  equations.emplace_back(stiffness, structure.holding_stiffness());
+    : system(s),
+      request(std::move(r)),
+      options(o),
+      structure(s, request.observed),
+      sliders(s.slider_count()),
+      patterns(s.size(), 0) {
+  stiffness = structure.holding_stiffness();
+  for (Index j = 0; j < sliders; ++j) stiffness[j] = s.sliders()[static_cast<std::size_t>(j)].stiffness;
+  limits = Vector::Constant(stiffness.size(), infinity);
+  equations.emplace_back(stiffness, structure.holding_stiffness(), s.laws());
   highest_frequency = structure.highest_frequency();
   forget();
 }
@@ -45,6 +60,9 @@ void HarmonicBalanceSolver::Implementation::forget_points() {
   equations.front().forget();
   count_wanted = 1;
   firmness = 0.0;
+  samples_wanted = 0;
+  laws_are_odd = std::all_of(system.laws().begin(), system.laws().end(),
+                             [](const model::LawBetween& law) { return law.law->is_odd(); });
 }
 
 void HarmonicBalanceSolver::Implementation::forget() {
@@ -60,7 +78,7 @@ void HarmonicBalanceSolver::Implementation::forget() {
 // stiffer than it can follow.
 bool HarmonicBalanceSolver::Implementation::can_be_shot(const Excitation& excitation, SteadyStart start) {
   const Index n = system.size(), m = stiffness.size();
-  if (n > largest_rigid || m == 0 || start == SteadyStart::previous) return false;
+  if (n > largest_rigid || m == 0 || system.law_count() > 0 || start == SteadyStart::previous) return false;
   if (!fastest) {
     const auto highest = [&](const SparseMatrix& k) {
       const Vector squares = numerics::all_modes(k, system.mass()).eigenvalues;
@@ -92,7 +110,7 @@ system::LocallyNonlinear HarmonicBalanceSolver::Implementation::with_contacts_up
 // which a series cannot, or its contacts stick and slip so sharply that more orders than there are would be needed.
 bool HarmonicBalanceSolver::Implementation::shoot(const Excitation& excitation, SteadyStart start,
                                                   SteadyResponse& response) {
-  if (system.size() > largest_rigid || stiffness.size() == 0) return false;
+  if (system.size() > largest_rigid || stiffness.size() == 0 || system.law_count() > 0) return false;
   if (!may_walk) may_walk = (numerics::all_modes(system.stiffness(), system.mass()).eigenvalues.array() == 0.0).any();
   const bool may_repeat = can_condense && can_be_shot(excitation, start);
   if (!*may_walk && !may_repeat) return false;
@@ -148,6 +166,7 @@ void HarmonicBalanceSolver::solve(const Excitation& excitation, SteadyStart star
   response.residual = response.error = 0.0;
   response.drift.resize(0);
   s.last = excitation;
+  s.limits.head(s.sliders) = excitation.limits;
   s.shot.reset();
   s.offsets = start == SteadyStart::previous ? s.remembered_offsets : Vector::Zero(s.stiffness.size());
   s.take_loads(excitation);
@@ -182,7 +201,7 @@ bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation
                                                     SteadyResponse& response) {
   auto& eq = equations.front();
   const Index m = stiffness.size();
-  const bool is_symmetric = excitation.is_half_wave_symmetric() && offsets.isZero(0.0);
+  const bool is_symmetric = excitation.is_half_wave_symmetric() && offsets.isZero(0.0) && laws_are_odd;
   const int stride = is_symmetric ? 2 : 1;
   int order = 1;
   for (const LoadHarmonic& h : excitation.harmonics) order = std::max(order, h.order);
@@ -201,9 +220,11 @@ bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation
   double difference = infinity;
   Vector compliance;
   has_answer = false;
+  bool is_sampled_anew = false;  // a balance of the same orders, with more samples
   for (;;) {
     const Orders orders{stride, count};
     const int probes = orders_to_probe(excitation, orders);
+    eq.set_samples(samples_for(orders, samples_wanted));
     can_condense = condense(excitation, stride, count + probes, !is_symmetric);
     if (!can_condense) return false;
     bool has_start = has_solution;
@@ -217,28 +238,43 @@ bool HarmonicBalanceSolver::Implementation::attempt(const Excitation& excitation
     // A structure that sliders alone hold seems to be in balance very far away.
     if (!newton(excitation, has_start, has_solution, effort, response) ||
         !are_slider_forces_resolved(system, excitation, series.mean)) {
-      if (has_solution) response.residual = return_to(solution, compliance, excitation);
+      if (has_solution) response.residual = return_to(solution, compliance);
       return false;
     }
     recover();
+    if (system.law_count() > 0) {
+      const double of_samples = sampling_error(probes);
+      // A law that is odd as far as it could be seen, and is not.
+      if (stride == 2 && !laws_act_oddly()) {
+        laws_are_odd = false;
+        return attempt(excitation, effort, response);
+      }
+      const int samples = samples_for(orders, samples_wanted);
+      is_sampled_anew = of_samples > share_of_samples * options.tolerance && samples < most_samples;
+      if (is_sampled_anew) samples_wanted = 4 * samples;
+    }
     response.error = truncation_error(probes);
     // The linear estimate knows nothing of what stiff contacts do as orders are added: two balances tell.
     if (!std::isinf(firmness_used)) {
-      difference = has_solution ? change_since(observed_before) : infinity;
+      difference = observed_before.size() > 0 ? change_since(observed_before) : infinity;
       response.error = std::max(response.error, caution * difference);
-      observed_before = observed;
+      if (!is_sampled_anew) observed_before = observed;
     }
     has_solution = has_answer = true;
-    if (response.error <= options.tolerance) {
+    if (!laws_close()) {
+      response.error = infinity;
+      return false;
+    }
+    if (!is_sampled_anew && response.error <= options.tolerance) {
       // A point that needed few orders lets the next one try fewer.
       firmness = firmness_used;
       count_wanted = response.error < 0.02 * options.tolerance ? std::max(1, 2 * count / 3) : count;
       return true;
     }
-    if (count >= most || response.iterations - first_iteration > most_iterations) return false;
+    if ((count >= most && !is_sampled_anew) || response.iterations - first_iteration > most_iterations) return false;
     eq.displacement_and_force(series, solution.displacement, solution.force);
     compliance = eq.added_compliance();
-    count = std::min(most, more(count));
+    if (!is_sampled_anew) count = std::min(most, more(count));
   }
 }
 
@@ -253,12 +289,24 @@ double HarmonicBalanceSolver::Implementation::change_since(const ComplexMatrix& 
   return largest > 0.0 ? change / largest : 0.0;
 }
 
+// Whether forces half a period apart are opposite, where only odd orders are balanced.
+bool HarmonicBalanceSolver::Implementation::laws_act_oddly() const {
+  constexpr double round_off = 1e-8;
+  const auto& laws = equations.front().laws();
+  return std::all_of(laws.begin(), laws.end(),
+                     [](const LawBySamples& law) { return law.asymmetry() <= round_off * law.largest_force(); });
+}
+
+bool HarmonicBalanceSolver::Implementation::laws_close() const {
+  const auto& laws = equations.front().laws();
+  return std::all_of(laws.begin(), laws.end(), [](const LawBySamples& law) { return law.has_closed(); });
+}
+
 // Leaves the balance of fewer orders, solved before.
-double HarmonicBalanceSolver::Implementation::return_to(const Motion& motion, const Vector& compliance,
-                                                        const Excitation& excitation) {
+double HarmonicBalanceSolver::Implementation::return_to(const Motion& motion, const Vector& compliance) {
   auto& eq = equations.front();
   eq.join(harmonics, compliance);
-  eq.set(excitation.limits, offsets);
+  eq.set(limits, offsets);
   series = eq.balanced(motion.displacement, motion.force);
   const double left = eq.solve(series, options.residual_tolerance, 2).residual;
   recover();
@@ -268,7 +316,7 @@ double HarmonicBalanceSolver::Implementation::return_to(const Motion& motion, co
 Waveform HarmonicBalanceSolver::waveform(int points) const {
   Implementation& s = *implementation_;
   if (s.shot) return s.shot->waveform(points);
-  const Index n = s.system.size(), m = s.stiffness.size();
+  const Index n = s.system.size(), m = s.sliders;
   const double w = s.last.angular_frequency;
   Waveform wave;
   wave.time = Vector::LinSpaced(points, 0.0, s.last.period() * (points - 1) / points);

@@ -46,9 +46,17 @@ void HarmonicBalanceSolver::Implementation::recover() {
 // What the orders left out and the rest of the residual would change, and round-off, against the largest observed
 // amplitude.
 double HarmonicBalanceSolver::Implementation::truncation_error(int probes) {
-  auto& eq = equations.front();
   const auto first = static_cast<std::size_t>(series.orders.count) + 1;
-  eq.truncation(series, first, first + static_cast<std::size_t>(probes), left_out, forces_left_out, force_change);
+  equations.front().truncation(series, first, first + static_cast<std::size_t>(probes), left_out, forces_left_out,
+                               force_change);
+  return relative_change(forces_left_out, probes);
+}
+
+// What changes of the forces of orders left out and of those kept (force_change) do, against the largest observed
+// amplitude.
+double HarmonicBalanceSolver::Implementation::relative_change(const ComplexMatrix& of_left_out, int probes) const {
+  const auto& eq = equations.front();
+  const auto first = static_cast<std::size_t>(series.orders.count) + 1;
   const Index m = stiffness.size(), o = structure.observed_count(), e = patterns.cols();
   const Index rows = o > 0 ? o : m, from = o > 0 ? m + e : 0;
   Vector change = Vector::Zero(rows), size = Vector::Zero(rows);
@@ -56,7 +64,7 @@ double HarmonicBalanceSolver::Implementation::truncation_error(int probes) {
     for (int p = 0; p < probes; ++p) {
       Complex x = 0.0;
       const ComplexMatrix& g = harmonics[first + static_cast<std::size_t>(p)].receptance;
-      for (const Index j : eq.active()) x += product(g(from + i, j), forces_left_out(p, j));
+      for (const Index j : eq.active()) x += product(g(from + i, j), of_left_out(p, j));
       change[i] += std::abs(x);
     }
     for (int k = 0; k < series.orders.count; ++k) {
@@ -71,10 +79,19 @@ double HarmonicBalanceSolver::Implementation::truncation_error(int probes) {
   return largest > 0.0 ? (safety * change.maxCoeff() + round_off * largest_moved) / largest : 0.0;
 }
 
+// What finer samples of the laws would change.
+double HarmonicBalanceSolver::Implementation::sampling_error(int probes) {
+  auto& eq = equations.front();
+  const std::size_t end = static_cast<std::size_t>(series.orders.count + probes) + 1;
+  eq.sampling(series, end, force_change);
+  return relative_change({}, 0);
+}
+
 // The structure could not be condensed. It is infinite only where a resonance without damping makes it so.
 void HarmonicBalanceSolver::Implementation::fill_without_answer(const Excitation& excitation,
                                                                 SteadyResponse& response) {
-  make_unbounded(request, stiffness.size(), response);
+  make_unbounded(request, sliders, response);
+  response.law_dissipated = Vector::Constant(system.law_count(), std::numeric_limits<double>::quiet_NaN());
   if (is_driven_beyond_friction(excitation)) return;
   response.status = SteadyStatus::not_converged;
   for (Vector* values :
@@ -125,11 +142,14 @@ void HarmonicBalanceSolver::Implementation::fill(const Excitation& excitation, S
     response.viscous_work += pi * k * dissipation;
     response.input_work += pi * k * input;
   }
-  response.dissipated.setZero(m);
-  response.slip_share.setZero(m);
-  response.offset.setZero(m);
+  response.dissipated.setZero(sliders);
+  response.slip_share.setZero(sliders);
+  response.offset.setZero(sliders);
+  response.law_dissipated.resize(system.law_count());
+  for (Index j = 0; j < system.law_count(); ++j)
+    response.law_dissipated[j] = eq.laws()[static_cast<std::size_t>(j)].dissipated();
   response.transitions = 0;
-  for (Index j = 0; j < m; ++j) {
+  for (Index j = 0; j < sliders; ++j) {
     if (!(excitation.limits[j] > 0.0)) {
       response.slip_share[j] = 1.0;
       remembered_offsets[j] = 0.0;

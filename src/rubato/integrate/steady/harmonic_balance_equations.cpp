@@ -67,9 +67,8 @@ void HarmonicBalanceEquations::displacement_and_force(const SliderSeries& balanc
   force.mean.setZero();
   force.coefficients.setZero();
   for (const Index j : active_) {
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
-    if (balanced.has_mean) force.mean[j] = loop.mean_force();
-    for (int i = 0; i < balanced.orders.count; ++i) force.coefficients(i, j) = loop.force(balanced.orders.at(i));
+    if (balanced.has_mean) force.mean[j] = mean_force_of(j);
+    for (int i = 0; i < balanced.orders.count; ++i) force.coefficients(i, j) = force_of(j, balanced.orders.at(i));
   }
   displacement = balanced;
   displacement.mean -= added_.cwiseProduct(force.mean);
@@ -78,7 +77,7 @@ void HarmonicBalanceEquations::displacement_and_force(const SliderSeries& balanc
 
 bool HarmonicBalanceEquations::any_slips() const {
   return std::any_of(active_.begin(), active_.end(),
-                     [&](Index j) { return loops_[static_cast<std::size_t>(j)].slips(); });
+                     [&](Index j) { return j >= sliders_ || loops_[static_cast<std::size_t>(j)].slips(); });
 }
 
 double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
@@ -89,18 +88,25 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   mean_force_.resize(stiffness_.size());
   displacement_ = linear_ = 0.0;
   double mean = 0.0;
+  if (!laws_.empty() && !is_extended_) coarse_angles_.prepare(samples_, series.orders);
   for (const Index j : active_) {
-    HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     const Complex* const u = series.coefficients.data() + j * count;
-    const double share = effective_[j] / stiffness_[j];  // of kT in what acts on W
-    loop.pass(effective_[j], limits_[j], series.mean[j], series.orders, u, share * offsets_[j]);
+    if (j < sliders_) {
+      const double share = effective_[j] / stiffness_[j];  // of kT in what acts on W
+      loops_[static_cast<std::size_t>(j)].pass(effective_[j], limits_[j], series.mean[j], series.orders, u,
+                                               share * offsets_[j]);
+    } else {
+      laws_[static_cast<std::size_t>(j - sliders_)].pass(
+          is_fine_ ? fine_angles_ : coarse_angles_, harmonics[1].angular_frequency, series.mean[j], series.orders, u);
+      if (!std::isfinite(law(j).mean_force())) return HUGE_VAL;
+    }
     for (int i = 0; i < count; ++i) {
       const auto place = static_cast<std::size_t>(i) + 1;
-      force_(i, j) = part(place, j) * loop.force(series.orders.at(i)) - held(place, j) * u[i];
+      force_(i, j) = part(place, j) * force_of(j, series.orders.at(i)) - held(place, j) * u[i];
       displacement_ = std::max(displacement_, std::abs(u[i].real()) + std::abs(u[i].imag()));
     }
     if (series.has_mean) {
-      mean_force_[j] = part(0, j) * loop.mean_force() - held(0, j) * series.mean[j];
+      mean_force_[j] = part(0, j) * mean_force_of(j) - held(0, j) * series.mean[j];
       mean = std::max(mean, std::abs(series.mean[j]));
     }
   }
@@ -108,14 +114,15 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   for (std::size_t a = 0; a < active_.size(); ++a) {
     const Index row = active_[a], base = static_cast<Index>(a) * rows;
     if (series.has_mean) {
-      double sum = series.mean[row] / part(0, row) - harmonics[0].linear[row].real();
-      linear_ = std::max(linear_, std::abs(harmonics[0].linear[row].real()));
+      const double linear = load_factor_ * harmonics[0].linear[row].real();
+      double sum = series.mean[row] / part(0, row) - linear;
+      linear_ = std::max(linear_, std::abs(linear));
       for (const Index j : active_) sum += joined_[0](row, j).real() * mean_force_[j];
       residual_[base] = sum;
     }
     for (int i = 0; i < count; ++i) {
       const auto place = static_cast<std::size_t>(i) + 1;
-      const Complex linear = harmonics[place].linear[row];
+      const Complex linear = load_factor_ * harmonics[place].linear[row];
       linear_ = std::max(linear_, std::abs(linear.real()) + std::abs(linear.imag()));
       Complex sum = series.coefficients(i, row) / part(place, row) - linear;
       for (const Index j : active_) sum += product(joined_[place](row, j), force_(i, j));
@@ -143,11 +150,11 @@ void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
   fill_diagonal(series, diagonal_);
   for (std::size_t b = 0; b < active_.size(); ++b) {
     const Index j = active_[b], from = static_cast<Index>(b) * rows;
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    if (j >= sliders_) laws_[static_cast<std::size_t>(j - sliders_)].differentiate();
     for (int l = 0; l < count; ++l)
       for (int i = 0; i < count; ++i) {
         Complex by_real, by_imaginary;
-        loop.derivative(series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
+        derivative_of(j, series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
         const auto place = static_cast<std::size_t>(i) + 1;
         by_real *= part(place, j);
         by_imaginary *= part(place, j);
@@ -160,9 +167,16 @@ void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
       }
     if (!series.has_mean) continue;
     columns_.col(from).setZero();
-    by_mean_[from] = part(0, j) * loop.mean_derivative() - held(0, j);
+    double by_mean = 0.0;
+    if (j < sliders_) {
+      by_mean = loops_[static_cast<std::size_t>(j)].mean_derivative();
+    } else {
+      by_mean = law(j).mean_derivative();
+      for (int i = 0; i < count; ++i) columns_(i, from) = law(j).derivative_by_mean(series.orders.at(i));
+    }
+    by_mean_[from] = part(0, j) * by_mean - held(0, j);
     for (int l = 0; l < count; ++l)
-      loop.mean_derivative(series.orders.at(l), by_mean_[from + 1 + 2 * l], by_mean_[from + 2 + 2 * l]);
+      mean_derivative_of(j, series.orders.at(l), by_mean_[from + 1 + 2 * l], by_mean_[from + 2 + 2 * l]);
     by_mean_.segment(from + 1, 2 * count) *= part(0, j);
   }
 }

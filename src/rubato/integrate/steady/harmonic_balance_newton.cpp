@@ -82,7 +82,7 @@ Vector HarmonicBalanceSolver::Implementation::slider_receptances() const {
 bool HarmonicBalanceSolver::Implementation::soften(const Vector& receptances) {
   Vector added = Vector::Zero(stiffness.size());
   for (Index j = 0; j < added.size(); ++j)
-    if (last.limits[j] > 0.0) added[j] = std::max(0.0, receptances[j] / firmness - 1.0 / stiffness[j]);
+    if (j < sliders && last.limits[j] > 0.0) added[j] = std::max(0.0, receptances[j] / firmness - 1.0 / stiffness[j]);
   equations.front().join(harmonics, added);
   return (added.array() > 0.0).any();
 }
@@ -94,20 +94,19 @@ void HarmonicBalanceSolver::Implementation::start_stuck() {
   series.mean.setZero();
   Vector unlimited = Vector::Constant(stiffness.size(), 0.0);
   for (Index j = 0; j < unlimited.size(); ++j)
-    if (last.limits[j] > 0.0) unlimited[j] = infinity;
+    if (limits[j] > 0.0) unlimited[j] = infinity;
   equations.front().set(unlimited, offsets);
   equations.front().solve(series, options.residual_tolerance, 3);
 }
 
 // Newton's method from the start, with the compliances joined last.
-bool HarmonicBalanceSolver::Implementation::solve_from(const Excitation& excitation, bool has_start, bool has_solution,
-                                                       int& iterations) {
+bool HarmonicBalanceSolver::Implementation::solve_from(bool has_start, bool has_solution, int& iterations) {
   auto& eq = equations.front();
   if (has_start)
     series = eq.balanced(guess.displacement, guess.force);
   else
     start_stuck();
-  eq.set(excitation.limits, offsets);
+  eq.set(limits, offsets);
   auto outcome = eq.solve(series, options.residual_tolerance, most_iterations);
   iterations += outcome.iterations;
   if (!outcome.has_converged && has_solution) {
@@ -126,20 +125,21 @@ bool HarmonicBalanceSolver::Implementation::newton(const Excitation& excitation,
                                                    Effort effort, SteadyResponse& response) {
   auto& eq = equations.front();
   const Vector receptances = slider_receptances();
-  const bool all_soft = (stiffness.cwiseProduct(receptances).array() <= soft).all();
+  const bool all_soft = (stiffness.cwiseProduct(receptances).head(sliders).array() <= soft).all();
   if (firmness == 0.0) firmness = all_soft ? infinity : first_firmness;
   for (;; firmness = std::isinf(firmness) ? soft : softer * firmness) {
     const bool is_softened = soften(receptances);
     firmness_used = firmness;
     const int before = response.iterations;
-    bool has_converged = solve_from(excitation, has_start, has_solution, response.iterations);
+    bool has_converged = solve_from(has_start, has_solution, response.iterations);
     if (has_converged && is_softened && response.iterations - before <= easy) firmness *= firmer;
-    const bool is_last = firmness <= least_firmness || effort == Effort::brief ||
+    const bool is_last = firmness <= least_firmness || sliders == 0 || effort == Effort::brief ||
                          (effort == Effort::limited && response.iterations > most_before_shooting);
     if (!has_converged && effort != Effort::brief && (is_last || std::isinf(firmness))) {
       start_stuck();
-      if (lower_the_limits(excitation, response.iterations)) {
-        eq.set(excitation.limits, offsets);
+      if (system.law_count() > 0 ? raise_the_loads(response.iterations)
+                                 : lower_the_limits(excitation, response.iterations)) {
+        eq.set(limits, offsets);
         const auto outcome = eq.solve(series, options.residual_tolerance, most_iterations);
         response.iterations += outcome.iterations;
         residual = outcome.residual;
@@ -198,6 +198,23 @@ bool HarmonicBalanceSolver::Implementation::lower_the_limits(const Excitation& e
   const double logarithm = std::log(factor);
   return follow(logarithm, std::min(0.25 * logarithm, 1.0), iterations,
                 [&](double power) { eq.set(std::exp(power) * excitation.limits, offsets); });
+}
+
+// All loads, multiplied by a factor that rises from where nothing slips and laws are linear to one.
+bool HarmonicBalanceSolver::Implementation::raise_the_loads(int& iterations) {
+  constexpr double first_share = 1e-4;
+  auto& eq = equations.front();
+  series.coefficients.setZero();
+  series.mean.setZero();
+  eq.set(limits, offsets);
+  eq.set_load_factor(first_share);
+  const auto outcome = eq.solve(series, options.residual_tolerance, most_iterations);
+  iterations += outcome.iterations;
+  const double logarithm = -std::log(first_share);
+  const bool done = outcome.has_converged && follow(logarithm, 0.25 * logarithm, iterations,
+                                                    [&](double power) { eq.set_load_factor(std::exp(-power)); });
+  eq.set_load_factor(1.0);
+  return done;
 }
 
 // From the solution with fewer orders: what it leaves in the balance is taken away bit by bit, so that loops split and

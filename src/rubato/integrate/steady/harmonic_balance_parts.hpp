@@ -40,19 +40,24 @@ struct HarmonicBalanceSolver::Implementation {
   bool attempt(const Excitation& excitation, Effort effort, SteadyResponse& response);
   bool predict(double angular_frequency, const Orders& orders, bool with_mean);
   bool newton(const Excitation& excitation, bool has_start, bool has_solution, Effort effort, SteadyResponse& response);
-  bool solve_from(const Excitation& excitation, bool has_start, bool has_solution, int& iterations);
+  bool solve_from(bool has_start, bool has_solution, int& iterations);
   Vector slider_receptances() const;
   bool soften(const Vector& receptances);
-  double return_to(const Motion& motion, const Vector& compliance, const Excitation& excitation);
+  double return_to(const Motion& motion, const Vector& compliance);
   void forget_points();
   double change_since(const ComplexMatrix& before) const;
   bool has_solved_points() const { return !past.empty() || count_wanted > 1 || firmness > 0.0; }
   template <class Apply>
   bool follow(double parameter, double step, int& iterations, Apply&& apply);
   bool lower_the_limits(const Excitation& excitation, int& iterations);
+  bool raise_the_loads(int& iterations);
   bool add_orders(int& iterations);
   void start_stuck();
   double truncation_error(int probes);
+  double sampling_error(int probes);
+  double relative_change(const ComplexMatrix& of_left_out, int probes) const;
+  bool laws_close() const;
+  bool laws_act_oddly() const;
   void recover();
   void fill(const Excitation& excitation, SteadyResponse& response);
   void fill_without_answer(const Excitation& excitation, SteadyResponse& response);
@@ -66,7 +71,11 @@ struct HarmonicBalanceSolver::Implementation {
   HarmonicBalanceOptions options;
   CondensedStructure structure;
   double highest_frequency = 0.0;
-  Vector stiffness;
+  Index sliders;     ///< the first of what is condensed to; behind them the laws
+  Vector stiffness;  ///< of both; of laws that by which they are held
+  Vector limits;     ///< of both at the point: none of laws
+  bool laws_are_odd;
+  int samples_wanted = 0;  ///< of laws; 0: by the orders
 
   Matrix patterns;                                   ///< orthonormal [n x e]
   std::vector<std::pair<int, ComplexVector>> loads;  ///< order and shares in the patterns; order 0: static

@@ -9,6 +9,31 @@ constexpr double estimate_tolerance = 1e-3;  // of the linear system: an estimat
 
 }  // namespace
 
+void HarmonicBalanceEquations::sampling(const SliderSeries& series, std::size_t end, ComplexMatrix& force_change) {
+  force_change.setZero(series.orders.count, stiffness_.size());
+  if (laws_.empty()) return;
+  // The derivatives, of the orders left out too, by the samples at hand; then the forces by finer ones.
+  const Orders all{series.orders.stride, static_cast<int>(end) - 1};
+  is_extended_ = true;
+  int samples = samples_;
+  while (samples < 4 * (all.highest() + 1)) samples *= 2;
+  coarse_angles_.prepare(samples, all);
+  evaluate(series);
+  differentiate(series);
+  if (!is_large(series)) factorise(series);
+  sampled_change_ = -force_;
+  fine_angles_.prepare(finer * samples, all);
+  is_fine_ = true;
+  evaluate(series);
+  is_fine_ = is_extended_ = false;
+  sampled_change_ += force_;
+  for (Index j = 0; j < sliders_; ++j) sampled_change_.col(j).setZero();
+  Vector change = -residual_;
+  solve_linear(series, estimate_tolerance, change);
+  force_change = sampled_change_;
+  add_force_change(series, change, force_change);
+}
+
 void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_t first, std::size_t end,
                                           ComplexMatrix& left_out, ComplexMatrix& forces_left_out,
                                           ComplexMatrix& force_change) {
@@ -19,7 +44,9 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   forces_left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
   force_change.setZero(count, stiffness_.size());
   if (!any_slips()) return;
-  for (const Index j : active_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
+  if (!laws_.empty()) force_change = sampled_change_;
+  for (const Index j : active_)
+    if (j < sliders_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
 
   // Each order alone, with its own part in the force: U + R (F + dF U) = 0.
   Vector right(2 * m);
@@ -33,10 +60,9 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     right.setZero();
     for (Index b = 0; b < m; ++b) {
       const Index j = active_[static_cast<std::size_t>(b)];
-      const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
       const auto at = static_cast<std::size_t>(b);
-      const Complex force = part(p, j) * loop.force(k);
-      loop.derivative(k, k, by_real[at], by_imaginary[at]);
+      const Complex force = part(p, j) * force_of(j, k);
+      derivative_of(j, k, k, by_real[at], by_imaginary[at]);
       by_real[at] = part(p, j) * by_real[at] - held(p, j);
       by_imaginary[at] = part(p, j) * by_imaginary[at] - Complex(0.0, held(p, j));
       forces_left_out(place, j) = force;
@@ -64,22 +90,21 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
 
   // What that does to the orders kept.
   const bool is_new = factor_.size() != rows * m;
-  if (is_new || is_large(series)) differentiate(series);
+  if ((is_new || is_large(series)) && laws_.empty()) differentiate(series);
   if (is_new && !is_large(series)) factorise(series);
   Vector mean_change = Vector::Zero(stiffness_.size());
   for (const Index j : active_) {
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
     for (std::size_t p = first; p < end; ++p) {
       const int l = series.orders.at(static_cast<int>(p) - 1);
       const Complex u = left_out(static_cast<Index>(p - first), j);
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;
-        loop.derivative(series.orders.at(i), l, real, imaginary);
+        derivative_of(j, series.orders.at(i), l, real, imaginary);
         force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (u.real() * real + u.imag() * imaginary);
       }
       if (series.has_mean) {
         double real, imaginary;
-        loop.mean_derivative(l, real, imaginary);
+        mean_derivative_of(j, l, real, imaginary);
         mean_change[j] += part(0, j) * (u.real() * real + u.imag() * imaginary);
       }
     }
@@ -99,15 +124,24 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     }
   }
   solve_linear(series, estimate_tolerance, change);
-  for (Index b = 0; b < m; ++b) {
+  add_force_change(series, change, force_change);
+}
+
+void HarmonicBalanceEquations::add_force_change(const SliderSeries& series, const Vector& change,
+                                                ComplexMatrix& force_change) const {
+  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
+  const int count = series.orders.count;
+  for (Index b = 0; b < static_cast<Index>(active_.size()); ++b) {
     const Index j = active_[static_cast<std::size_t>(b)];
-    const HysteresisLoop& loop = loops_[static_cast<std::size_t>(j)];
+    if (j >= sliders_ && series.has_mean)
+      for (int i = 0; i < count; ++i)
+        force_change(i, j) += change[b * rows] * law(j).derivative_by_mean(series.orders.at(i));
     for (int l = 0; l < count; ++l) {
       const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
       force_change(l, j) -= held(static_cast<std::size_t>(l) + 1, j) * Complex(re, im);
       for (int i = 0; i < count; ++i) {
         Complex real, imaginary;
-        loop.derivative(series.orders.at(i), series.orders.at(l), real, imaginary);
+        derivative_of(j, series.orders.at(i), series.orders.at(l), real, imaginary);
         force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (re * real + im * imaginary);
       }
     }

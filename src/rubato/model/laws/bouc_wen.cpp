@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/model/laws/law_kind.hpp>
+#include <rubato/model/laws/law_slopes.hpp>
 #include <rubato/numerics/gauss_legendre.hpp>
 
 #include <fmt/format.h>
@@ -142,7 +143,7 @@ class PowerFlow {
 
 /// f = alpha k u + (1 - alpha) k z, dz/dt = du/dt (A - |z|^n (gamma + beta sgn(z du/dt))): Bouc 1967; Wen 1976, eqs. 1
 /// to 4. Between turns of u, z is a function of u, which advance() follows exactly; its memory is z [m].
-class BoucWen final : public Law {
+class BoucWen final : public Law, public LawSlopes {
  public:
   BoucWen(double stiffness, double ratio, double a, double beta, double gamma, double n)
       : elastic_(ratio * stiffness),
@@ -161,6 +162,22 @@ class BoucWen final : public Law {
     double slope = 0.0;
     next[0] = moved(memory[0], to.u - from.u, to.rate, slope);
     return {elastic_ * to.u + hysteretic_ * next[0], elastic_ + hysteretic_ * slope, 0.0};
+  }
+
+  /// Along a travel dz/du is rate(z), so that a change of z grows by the ratio of the rates at both ends.
+  void slopes(const LawPoint& from, const double* memory, const LawPoint& to, double* slopes) const override {
+    const double travel = to.u - from.u;
+    double slope = 0.0;
+    moved(memory[0], travel, to.rate, slope);
+    const double start = rate(memory[0], travel);
+    // At the limit of z both rates vanish; near it, where they are small differences, z hardly counts.
+    const double kept = travel == 0.0 ? 1.0 : std::abs(start) > 1e-12 * a_ ? slope / start : decay_at_limit(travel);
+    slopes[0] = elastic_ + hysteretic_ * slope;
+    slopes[2] = -hysteretic_ * slope;
+    slopes[4] = hysteretic_ * kept;
+    slopes[5] = slope;
+    slopes[7] = -slope;
+    slopes[9] = kept;
   }
 
   LawAnswer at(const LawPoint& point, const double* memory) const override {
@@ -238,6 +255,11 @@ class BoucWen final : public Law {
                : c < 0.0 ? -1.0
                          : 0.0) {}
   };
+
+  /// What is left after a travel of a small distance to the limit of z, d(dz/du)/dz there being -n A / limit.
+  double decay_at_limit(double travel) const {
+    return together_.sign > 0.0 ? std::exp(-n_ * a_ * std::abs(travel) / together_.limit) : 1.0;
+  }
 
   double elastic_, hysteretic_;  // alpha k, (1 - alpha) k [N/m]
   double a_, beta_, gamma_, n_;
