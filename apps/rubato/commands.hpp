@@ -37,6 +37,8 @@ struct CompareOptions {
 
 int run(const RunOptions& options);
 int check(const StudyOptions& options);
+/// Prints which analysis takes which law.
+int list_laws();
 int list_methods();
 int show_method(const std::string& name, const std::vector<std::string>& parameters, bool csv);
 int list_examples();

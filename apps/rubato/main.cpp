@@ -121,6 +121,8 @@ int main(int argc, char** argv) {
   methods->add_option("--set", method_parameters, "a parameter of the method: PARAM=NUMBER")->allow_extra_args(false);
   methods->add_flag("--csv", csv, "the curves over omega h as CSV");
 
+  auto* laws = cli.add_subcommand("laws", "list sliders, stops and other laws, and which analysis takes which");
+
   std::string example_name, example_folder;
   auto* example = cli.add_subcommand("example", "list the examples, or copy one here");
   example->add_option("name", example_name, "an example");
@@ -156,6 +158,7 @@ int main(int argc, char** argv) {
         throw InvalidInput("--csv and --set need the name of a method");
       return finish(method.empty() ? app::list_methods() : app::show_method(method, method_parameters, csv));
     }
+    if (*laws) return finish(app::list_laws());
     if (*example)
       return finish(example_name.empty() ? app::list_examples() : app::copy_example(example_name, example_folder));
     if (*compare) return finish(app::compare(compare_options));

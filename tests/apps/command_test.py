@@ -68,7 +68,7 @@ class Command(CommandCase):
                 (["run"], "error: name the study file: rubato run STUDY.toml\n"),
                 ([], "error: A subcommand is required\n`rubato --help` says more\n"),
                 (["rnu", study], 'error: the subcommand or option "rnu" is unknown; did you mean "run"? '
-                                 '(known: run, check, methods, example, compare, schema, --help, --version)\n'
+                                 '(known: run, check, methods, laws, example, compare, schema, --help, --version)\n'
                                  '`rubato --help` says more\n')]:
             result = self.run_command(*arguments)
             self.assertEqual((result.returncode, result.stdout), (2, ""), arguments)
@@ -185,7 +185,7 @@ duration = 0.1
         self.assertRegex(self.run_command("--version").stdout, r"^rubato \d+\.\d+\.\d+\n$")
         text = self.run_command("--help")
         self.assertEqual((text.returncode, text.stderr), (0, ""))
-        for word in ("run", "check", "methods", "example", "schema", "rubato run underplatform-damper/study.toml"):
+        for word in ("run", "check", "methods", "laws", "example", "schema", "rubato run underplatform-damper/study.toml"):
             self.assertIn(word, text.stdout)
         text = self.run_command("run", "--help").stdout
         for word in ("--only NAME ...", "--set PARAM=VALUE ...", "-o,--output DIR", "--jobs N", "-q,--quiet"):
@@ -252,6 +252,16 @@ duration = 1.0
                                                           "0 degrees of freedom left, 0 locks")
         self.assertEqual(size_with(4, 'lock = { at = 1.0, kind = "latch" }'),
                          "9 coordinates, 8 constraints (0 of drives, 0 redundant), 1 degree of freedom left, 1 lock")
+
+    def test_laws_names_every_law_and_what_to_take_where_one_is_refused(self):
+        lines = self.run_command("laws").stdout.splitlines()
+        table = {line.split("  ")[0]: line for line in lines[1:8]}
+        for law in ("slider", "stop", "bouc_wen", "nonlinear_spring", "joint friction", "joint lock"):
+            self.assertIn(law, table)
+        column = lines[0].index("harmonic_balance")
+        self.assertTrue(table["bouc_wen"][column:].startswith("by samples"))
+        self.assertTrue(table["stop"][column:].startswith("- "))
+        self.assertIn('  laws under periodic: take solver = "harmonic_balance" or "time_marching"', lines)
 
     def test_methods_and_schema_and_examples_answer_on_stdout(self):
         self.assertIn("generalized_alpha", self.run_command("methods").stdout)

@@ -1,4 +1,5 @@
 #include <rubato/analysis/as_printed.hpp>
+#include <rubato/analysis/law_routes.hpp>
 #include <rubato/analysis/method_study_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
@@ -84,19 +85,7 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
                                   const model::MethodStudyDescription& study, const system::LocallyNonlinear& system,
                                   const numerics::Parameters& parameters) {
   const std::string title = "analysis \"" + name + "\": ";
-  if (system.slider_count() > 0)
-    throw InvalidInput(where,
-                       fmt::format("{}a method study needs a linear model with a closed-form response, this one has "
-                                   "{} slider(s)",
-                                   title, system.slider_count()));
-  if (system.stop_count() > 0)
-    throw InvalidInput(where, fmt::format("{}a method study needs a linear model with a closed-form response, this one "
-                                          "has the stop \"{}\"",
-                                          title, system.stops().front().name));
-  if (system.law_count() > 0)
-    throw InvalidInput(where, fmt::format("{}a method study needs a linear model with a closed-form response, this one "
-                                          "has the law \"{}\"",
-                                          title, system.laws().front().name));
+  if (const auto reason = refusal(Route::method_study, system)) throw InvalidInput(where, title + *reason);
   if (!system.loads().are_harmonic())
     throw InvalidInput(where, title + "a method study needs harmonic loads, whose response has a closed form");
   try {

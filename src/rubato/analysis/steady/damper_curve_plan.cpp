@@ -1,3 +1,4 @@
+#include <rubato/analysis/law_routes.hpp>
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/damper_curve_tables.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
@@ -75,14 +76,7 @@ void plan_frequencies(DamperCurvePlan& plan, const Description& description, con
 
 void plan_objective(DamperCurvePlan& plan, const Description& description, const StudyInput& input,
                     const std::string& title, const Location& where) {
-  if (input.system.stop_count() > 0)
-    throw InvalidInput(where, fmt::format("{}a damper curve knows sliders, and the model has the stop \"{}\"; take a "
-                                          "frequency_response with solver = \"time_marching\" and a sweep",
-                                          title, input.system.stops().front().name));
-  if (input.system.law_count() > 0)
-    throw InvalidInput(where, fmt::format("{}a damper curve knows sliders, and the model has the law \"{}\"; take "
-                                          "transients",
-                                          title, input.system.laws().front().name));
+  if (const auto reason = refusal(Route::damper_curve, input.system)) throw InvalidInput(where, title + *reason);
   plan.objective = description.objective;
   if (plan.objective == Description::Objective::dissipated && input.system.slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),

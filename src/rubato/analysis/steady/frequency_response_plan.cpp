@@ -1,3 +1,4 @@
+#include <rubato/analysis/law_routes.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
@@ -88,20 +89,26 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
     for (std::size_t i = plan.frequencies.size(); i-- > 0;) plan.steps.push_back({i, true});
 }
 
+Route route_of(SteadyRoute::Kind kind) {
+  return kind == SteadyRoute::Kind::periodic           ? Route::periodic
+         : kind == SteadyRoute::Kind::harmonic_balance ? Route::harmonic_balance
+                                                       : Route::time_marching;
+}
+
+/// What is described, with the solver that is taken where none is named.
+Description with_route(Description description, const StudyInput& input) {
+  const bool is_named = description.route_where.line > 0;
+  if (!is_named && description.route == Description::Route::periodic && input.system.law_count() > 0)
+    description.route = Description::Route::harmonic_balance;
+  return description;
+}
+
 void plan_route(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                 const std::string& title, const Location& where) {
-  if (input.system.stop_count() > 0 && description.route != Description::Route::time_marching)
-    throw InvalidInput(
-        place(description.route_where, where),
-        fmt::format("{}the solver {} knows sliders, and the model has the stop \"{}\"; take solver = "
-                    "\"time_marching\"",
-                    title, description.route == Description::Route::periodic ? "periodic" : "harmonic_balance",
-                    input.system.stops().front().name));
-  if (input.system.law_count() > 0)
-    throw InvalidInput(place(description.route_where, where),
-                       fmt::format("{}a frequency response knows sliders and stops, and the model has the law \"{}\"; "
-                                   "take a transient that is long enough",
-                                   title, input.system.laws().front().name));
+  const Route route = route_of(description.route);
+  const auto reason = refusal(route, input.system);
+  if (reason) throw InvalidInput(place(description.route_where, where), title + *reason);
+  if (const auto of_time = refusal_of_time(input.system)) throw InvalidInput(where, title + *of_time);
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");
@@ -194,7 +201,8 @@ std::size_t FrequencyResponsePlan::steps_a_piece() const {
 }
 
 FrequencyResponsePlan plan_frequency_response(const std::string& name, const Location& where,
-                                              const Description& description, const StudyInput& input) {
+                                              const Description& described, const StudyInput& input) {
+  const Description description = with_route(described, input);
   const std::string title = "analysis \"" + name + "\": ";
   require_harmonic_loads(input, where, title);
   Sweep sweep(description.sweep, place(description.sweep_where, where), input, title);

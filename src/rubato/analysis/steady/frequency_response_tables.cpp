@@ -67,6 +67,8 @@ std::vector<std::string> reserved_columns() {
           "observed",
           "slider",
           "rotational_slider",
+          "law",
+          "rotational_law",
           "direction",
           "angular_frequency",
           "fundamental",
@@ -144,6 +146,7 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
   sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},
               {"moment_offset", "N m", "moment at rest of a slider that never slips, fc - kT u"}, blocks);
+  add_laws(input.system);
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));
   blocks.push_back(scalar("input_work", "J", "work of the loads over a period"));
   blocks.push_back(scalar("transitions", "1", "from stick to slip and back, in a period"));
@@ -152,6 +155,21 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   blocks.push_back(scalar("error", "1", "estimated error of the amplitudes, relative to the largest"));
   blocks.push_back({"status", "", "what became of the point", "", {}, status_words()});
   width_ = layout_.row_width();
+}
+
+void ResponseTable::add_laws(const system::LocallyNonlinear& system) {
+  for (const bool is_rotation : {false, true}) {
+    std::vector<std::string> labels;
+    for (Index j = 0; j < system.law_count(); ++j) {
+      const auto& law = system.laws()[static_cast<std::size_t>(j)];
+      if (system.is_rotation(law.first == ground ? law.second : law.first) != is_rotation) continue;
+      labels.push_back(law.name);
+      laws_.push_back(j);
+    }
+    if (!labels.empty())
+      layout_.blocks.push_back(
+          {"dissipated", "J", "by a law over a period", is_rotation ? "rotational_law" : "law", labels});
+  }
 }
 
 void ResponseTable::add_place(const RowPlace& place, std::vector<double>& rows) const {
@@ -176,6 +194,7 @@ void ResponseTable::add(const RowPlace& place, double fundamental, const integra
   append(response.rms, rows);
   for (const Vector* values : {&response.dissipated, &response.slip_share, &response.offset})
     for (const Index i : sliders_) rows.push_back((*values)[i]);
+  for (const Index j : laws_) rows.push_back(response.law_dissipated[j]);
   rows.push_back(response.viscous_work);
   rows.push_back(response.input_work);
   rows.push_back(static_cast<double>(response.transitions));

@@ -25,7 +25,7 @@ struct RowPlace {
 };
 
 /// The main table, a row a point: the swept parameters, the direction (where both are asked for), `angular_frequency`,
-/// `fundamental` (where it is another), what is observed, the sliders, the works, and how far to trust it.
+/// `fundamental` (where it is another), what is observed, the sliders, the laws, the works, and how far to trust it.
 class ResponseTable {
  public:
   ResponseTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input);
@@ -40,11 +40,12 @@ class ResponseTable {
   void add_impossible(const RowPlace& place, std::vector<double>& rows) const;
 
  private:
+  void add_laws(const system::LocallyNonlinear& system);
   void add_place(const RowPlace& place, std::vector<double>& rows) const;
 
   results::TableLayout layout_;
   std::size_t width_ = 0, amplitudes_ = 0;
-  std::vector<Index> sliders_;  ///< in the order of the columns
+  std::vector<Index> sliders_, laws_;  ///< in the order of the columns
   bool has_direction_ = false, has_fundamental_ = false;
 };
 

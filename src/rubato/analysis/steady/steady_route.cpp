@@ -9,6 +9,8 @@ namespace {
 using integrate::SteadyRequest;
 using system::LocallyNonlinear;
 
+bool is_linear(const LocallyNonlinear& system) { return system.slider_count() == 0 && system.law_count() == 0; }
+
 std::unique_ptr<integrate::SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
                                                 const SteadyRequest& request, bool stuck) {
   return std::make_unique<integrate::LinearResponse>(
@@ -59,12 +61,12 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
     return linear(route, system, request, true);
   };
   solvers.coarse = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return system.slider_count() == 0 ? linear(route, system, request, false) : harmonic_balance({}, system, request);
+    return is_linear(system) ? linear(route, system, request, false) : harmonic_balance({}, system, request);
   };
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
     if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);
-    if (system.slider_count() == 0) return linear(route, system, request, false);
+    if (is_linear(system)) return linear(route, system, request, false);
     return route.kind == SteadyRoute::Kind::periodic ? periodic(route, system, request)
                                                      : harmonic_balance(route, system, request);
   };

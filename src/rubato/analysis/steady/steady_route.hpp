@@ -39,8 +39,8 @@ struct SteadySolvers {
   Make coarse;       ///< with friction, to about a thousandth, at a small part of the cost
 };
 
-/// The solvers of a route. A system without sliders is linear: unless it is marched, its response is that of the free
-/// limit.
+/// The solvers of a route. A system without sliders and other laws is linear: unless it is marched, its response is
+/// that of the free limit.
 SteadySolvers steady_solvers(const SteadyRoute& route);
 
 }  // namespace rubato::analysis

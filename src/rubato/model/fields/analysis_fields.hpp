@@ -205,7 +205,7 @@ void fields(auto& visit, FrequencyResponseDescription& task) {
               {"harmonic_balance", Task::Route::harmonic_balance},
               {"time_marching", Task::Route::time_marching}},
              {.says = "the route", .unless = "periodic"});
-  visit.where(task.route_where, "solver");
+  visit.where_given(task.route_where, "solver");
   visit.word("start", task.start,
              {{"unloaded", Task::Start::unloaded}, {"previous", Task::Start::previous}, {"rest", Task::Start::rest}},
              {.says = "what a slider that never slips remembers: nothing, the point solved before, or a march from the "

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+
+// Which route takes which law: the one table that analyses refuse by, and that `rubato laws` prints.
+namespace rubato::analysis {
+
+/// How an analysis finds its answers.
+enum class Route {
+  steps,        ///< transients by a method with a step
+  exact,        ///< transients by the method `exact`
+  equilibrium,  ///< statics
+  modes,
+  periodic,          ///< frequency responses
+  harmonic_balance,  ///< likewise
+  time_marching,     ///< likewise
+  damper_curve,
+  method_study
+};
+inline constexpr int route_count = 9;
+
+/// What a model may have that is not linear.
+enum class Element {
+  slider,
+  stop,
+  law,  ///< of any kind in model/laws, between coordinates
+  joint_friction,
+  lock
+};
+inline constexpr int element_count = 5;
+
+/// What a route does with an element.
+struct Handling {
+  const char* how;      ///< in a word or two; "" where it refuses
+  const char* instead;  ///< what to take where it refuses; "" where nothing does
+};
+const Handling& handling(Element element, Route route);
+
+/// For tables: "harmonic balance".
+const char* name_of(Route route);
+/// For messages: "the solver harmonic_balance".
+const char* title_of(Route route);
+
+/// Why a route cannot take a structure, and what can; nothing where it can.
+std::optional<std::string> refusal(Route route, const system::LocallyNonlinear& system);
+
+/// Why no steady response follows from the laws of a structure: one depends on time. Nothing where none does.
+std::optional<std::string> refusal_of_time(const system::LocallyNonlinear& system);
+
+}  // namespace rubato::analysis

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include "support/memory_sink.hpp"
+#include "support/prepared_study.hpp"
+
+#include <rubato/analysis/law_routes.hpp>
+#include <rubato/analysis/steady/damper_curve_plan.hpp>
+#include <rubato/analysis/steady/frequency_response.hpp>
+#include <rubato/analysis/steady/frequency_response_plan.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <utility>
+
+// Frequency responses of structures with laws other than sliders.
+namespace rubato::testing {
+namespace {
+
+using namespace analysis;
+
+FrequencyResponsePlan plan_of(const PreparedStudy& prepared) {
+  const auto& analysis = prepared.study.analyses.front();
+  return plan_frequency_response(analysis.name, analysis.where,
+                                 std::get<model::FrequencyResponseDescription>(analysis.task), prepared.input());
+}
+
+std::string study(const std::string& laws, const std::string& analysis) {
+  return R"(
+[parameters]
+Omega = 1.0
+N0 = 1.0
+[[coordinate]]
+name = "mass"
+mass = 1.0
+[[damper]]
+between = ["mass", "ground"]
+damping = 0.02
+[[force]]
+on = "mass"
+amplitude = 0.3
+angular_frequency = "Omega"
+)" + laws +
+         R"(
+[[analysis]]
+name = "frf"
+)" + analysis;
+}
+
+const std::string foot = R"(
+[[bouc_wen]]
+name = "foot"
+between = ["mass", "ground"]
+stiffness = 1.0
+post_yield_ratio = 0.1
+)";
+
+const std::atomic<bool> never{false};
+
+/// The rows of a study's first analysis.
+struct Rows {
+  explicit Rows(const PreparedStudy& prepared) : plan(plan_of(prepared)) {
+    QuietProgress progress;
+    RunContext context{sink, progress, never, 1, nullptr};
+    run_frequency_response("frf", plan, prepared.input(), steady_solvers(plan.route), context);
+  }
+  double at(const std::string& table, std::size_t row, const std::string& variable, const std::string& label) const {
+    const auto& rows = sink.tables.at(table);
+    return rows.rows.at(row).at(rows.column(variable, label));
+  }
+  FrequencyResponsePlan plan;
+  MemorySink sink;
+};
+
+std::string message_of(const PreparedStudy& prepared) {
+  try {
+    (void)plan_of(prepared);
+  } catch (const InvalidInput& fault) {
+    return fault.message();
+  }
+  return {};
+}
+
+TEST(LawResponses, AreBalancedWhereNoSolverIsNamed) {
+  const PreparedStudy prepared(study(foot, R"(
+type = "frequency_response"
+angular_frequency = [0.7, 0.85, 1.0]
+)"));
+  const Rows run(prepared);
+  EXPECT_EQ(run.plan.route.kind, SteadyRoute::Kind::harmonic_balance);
+  // friction-family reference, section 9, n = 1; the route promises 1e-3.
+  const double amplitudes[] = {0.847936441856, 1.3257405138, 0.991463047334},
+               works[] = {0.33720943227, 1.12861316178, 0.521487967447};
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_NEAR(run.at("frf", row, "amplitude", "mass"), amplitudes[row], 1e-3 * amplitudes[row]);
+    EXPECT_NEAR(run.at("frf", row, "dissipated", "foot"), works[row], 5e-3 * works[row]);
+  }
+}
+
+TEST(LawResponses, OfPeriodicOrbitsAreRefusedWithWhatTakesThem) {
+  const PreparedStudy prepared(study(foot, R"(
+type = "frequency_response"
+angular_frequency = [0.7, 1.0]
+solver = "periodic"
+)"));
+  EXPECT_EQ(
+      message_of(prepared),
+      "analysis \"frf\": the solver periodic knows sliders, and the model has the bouc_wen \"foot\"; take solver = "
+      "\"harmonic_balance\" or \"time_marching\"");
+}
+
+TEST(LawResponses, OfLawsThatDependOnTimeAreRefused) {
+  const PreparedStudy prepared(study(R"(
+[[nonlinear_spring]]
+name = "pulse"
+between = ["mass", "ground"]
+force = "u*(1 + 0.1*sin(t)) "
+)",
+                                     R"(
+type = "frequency_response"
+angular_frequency = [0.7, 1.0]
+solver = "time_marching"
+)"));
+  EXPECT_EQ(message_of(prepared),
+            "analysis \"frf\": the nonlinear_spring \"pulse\" depends on t, and a steady response repeats with the "
+            "loads; write it without t, or run a transient");
+}
+
+TEST(LawResponses, HaveTheSlopesOfTheLawsAtRestInTheirLinearLimits) {
+  const PreparedStudy prepared(study(foot, R"(
+type = "frequency_response"
+angular_frequency = [0.5, 2.0]
+)"));
+  const Rows run(prepared);
+  for (const auto& [row, w] : {std::pair<std::size_t, double>{0, 0.5}, {1, 2.0}}) {
+    const double expected = 0.3 / std::hypot(1.0 - w * w, 0.02 * w);  // k = 1 in both limits: there are no sliders
+    EXPECT_NEAR(run.at("frf.linear", row, "free_amplitude", "mass"), expected, 1e-9);
+    EXPECT_NEAR(run.at("frf.linear", row, "stuck_amplitude", "mass"), expected, 1e-9);
+  }
+}
+
+TEST(LawResponses, OfDamperCurvesAreRefused) {
+  const PreparedStudy prepared(study(foot + R"(
+[[slider]]
+name = "contact"
+between = ["mass", "ground"]
+stiffness = 1.0
+friction_coefficient = 0.5
+normal_load = "N0"
+)",
+                                     R"(
+type = "damper_curve"
+parameter = "N0"
+range = [0.1, 0.2]
+angular_frequency = { from = 0.5, to = 1.5 }
+)"));
+  EXPECT_EQ(
+      refusal(Route::damper_curve, prepared.input().system),
+      "a damper curve knows sliders, and the model has the bouc_wen \"foot\"; take a frequency_response with solver "
+      "= \"harmonic_balance\" and a sweep");
+}
+
+}  // namespace
+}  // namespace rubato::testing
