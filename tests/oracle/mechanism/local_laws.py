@@ -18,7 +18,7 @@ class ReadsLocalLaws:
     def _read_local_laws(self):
         def place(part):
             if "joint" not in part:
-                return [self._coordinate(n) for n in part["between"]], part["between"][0].rsplit(".", 1)[-1].startswith("r")
+                return [self._coordinate(n) for n in part["between"]], any(str(n).rsplit(".", 1)[-1].startswith("r") for n in part["between"])
             joint = next((j for j in self.joints if j.name == str(part["joint"])), None)
             if joint is None or joint.way is None:
                 raise Refused("a law on a joint without a coordinate")

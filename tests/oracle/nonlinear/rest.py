@@ -1,4 +1,4 @@
-"""Equilibria of structures with nonlinear laws: loads grow from zero in many parts, and each Bouc-Wen element remembers the way.
+"""Equilibria of structures with nonlinear laws: loads grow from zero, at once and in many parts, and each Bouc-Wen element remembers the way.
 
 Within a part u goes one way, so that z is exact; where no u turns back one part gives the same as many. Sliders and stops have the
 force of where they are, as without laws.
@@ -25,24 +25,25 @@ class PathEquilibrium:
 
 
 def equilibrium(model, fixed, load):
-    """Where the loads [n] and the displacements `fixed` {index: value} grow together from zero."""
-    coarse = _follow(model, fixed, load, 150)
-    fine = _follow(model, fixed, load, 300)
-    size = max(numpy.max(numpy.abs(fine[0])), 1e-300)
-    z_size = [max(abs(z), 1e-300) for z in fine[1]]
-    apart = max(numpy.max(numpy.abs(coarse[0] - fine[0])) / size, *(abs(a - b) / s for a, b, s in zip(coarse[1], fine[1], z_size)))
-    if apart > 1e-3:
-        raise Unreadable("an equilibrium that depends on how the loads grow")
-    model.turns_back = apart
-    return PathEquilibrium(fine[0], model, fine[1], load, fixed)
+    """Where the loads [n] and the displacements `fixed` {index: value} lead that grow together from zero, each element loaded without a
+    turn. Where elements turn on the way that is another state, which is not judged; stops that are compressed without loads have no
+    way of their own."""
+    at_once = _follow(model, fixed, load, [1.0])
+    model.turns_back = 0.0
+    if all(stop.gap >= 0 for stop in model.stops):
+        on_the_way = _follow(model, fixed, load, [i / 200 for i in range(1, 201)])
+        size = max(numpy.max(numpy.abs(at_once[0])), 1e-300)
+        if numpy.max(numpy.abs(at_once[0] - on_the_way[0])) > 1e-7 * size:
+            raise Unreadable("an element turns on the way of the loads")
+        model.turns_back = numpy.max(numpy.abs(at_once[0] - on_the_way[0])) / size
+    return PathEquilibrium(at_once[0], model, at_once[1], load, fixed)
 
 
-def _follow(model, fixed, load, parts):
+def _follow(model, fixed, load, shares):
     n = len(model.names)
     free = [i for i in range(n) if i not in fixed]
     q, memories, ways = numpy.zeros(n), [0.0] * len(model.laws), [0.0] * len(model.laws)
-    for part in range(parts + 1):
-        grown = part / parts
+    for grown in shares:
         start = q.copy()
         for i, value in fixed.items():
             q[i] = grown * value
