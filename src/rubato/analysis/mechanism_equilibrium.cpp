@@ -98,7 +98,8 @@ RunReport run_mechanism_static(const std::string& name, const Location& where,
     report.status = RunStatus::failed;
     return report;
   }
-  const auto columns = results::columns_of_equilibrium(mechanism, observed_or_all(description.observe, {mechanism}),
+  system::MechanismEquations equations(mechanism);
+  const auto columns = results::columns_of_equilibrium(equations, observed_or_all(description.observe, {mechanism}),
                                                        description.section_forces, "analysis \"" + name + "\": ");
   results::TableLayout layout{name, "", "state", {{"state", "1", "number of the state", "", {}}}, {{"type", "static"}}};
   if (const std::string held = held_locks(found.state, mechanism, "\n"); !held.empty())

@@ -80,6 +80,21 @@ void refuse_unknown_reactions(const Location& where, system::MechanismEquations&
     }
 }
 
+/// Of a law with a memory on a strut, whose spring would act from the length zero.
+void warn_of_pressed_struts(system::MechanismEquations& equations, const system::State& start,
+                            std::vector<std::string>& warnings) {
+  const auto& laws = equations.mechanism().model().laws;
+  equations.go_to(start, model::Side::right);
+  for (std::size_t j = 0; j < laws.size(); ++j) {
+    if (!laws[j].is_length() || laws[j].law->memory_size() == 0 || equations.law_force(j) == 0.0) continue;
+    warnings.push_back(
+        fmt::format("{} \"{}\" starts with {:.4g} N, since it acts on a strut, where u is the length of {:.6g} m; to "
+                    "have it act from "
+                    "that length, give the strut the part of its stiffness that does not yield, and the law none",
+                    laws[j].kind, laws[j].name, equations.law_force(j), equations.law_displacement(j)));
+  }
+}
+
 /// Of masses and places that double precision cannot hold beside each other.
 std::string immense_numbers(const system::Mechanism& mechanism) {
   const Vector inertia = mechanism.mass().diagonal(), place = mechanism.start().q.cwiseAbs();
@@ -139,6 +154,7 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
         "{:.4g} {}",
         coordinate(start.most_moved), start.position_moved, unit_of_coordinate(start.most_moved, mechanism)));
   if (moves) warn_of_velocities(start, mechanism, warnings);
+  warn_of_pressed_struts(equations, start.state, warnings);
   if (!start.redundant.empty())
     warnings.push_back(
         fmt::format("{} repeat{} what other joints say; of the reactions that make the same motion the "

@@ -5,6 +5,7 @@
 #include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
+#include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_stepper.hpp>
@@ -129,6 +130,8 @@ class MechanismMarch final : public TransientMarch {
   std::vector<std::unique_ptr<integrate::EnergyPart>> energy_parts() override {
     std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
     parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance_, timeline_));
+    if (!mechanism_.model().laws.empty())
+      parts.push_back(std::make_unique<integrate::MechanismLawEnergy>(balance_.equations()));
     return parts;
   }
   results::ColumnGroups columns() override {

@@ -37,8 +37,9 @@ class Balance {
   /// Whether the loads jump at t without a trace in the states of a march, which steps over the jump.
   virtual bool loads_jump(double t) = 0;
 
-  /// Sets the forces of sliders and stops at a state that the motion from `before` reaches without turning back.
-  virtual void find_contact_forces(const system::State& before, system::State& state) const = 0;
+  /// Sets the forces of sliders and stops, and the memory of laws, at a state that the motion from `before` reaches
+  /// without turning back.
+  virtual void find_contact_forces(const system::State& before, system::State& state) = 0;
 };
 
 }  // namespace rubato::integrate

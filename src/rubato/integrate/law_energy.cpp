@@ -10,7 +10,7 @@ double dissipated_by_law(const system::LocallyNonlinear& system, Index law, cons
       system.law_point(law, after, model::Side::left), after.memory.data() + memory);
 }
 
-std::vector<Account> LawEnergy::accounts() const {
+std::vector<Account> accounts_of_laws() {
   return {{Account::Kind::stored, "law_stored", "elastic energy of the laws"},
           {Account::Kind::dissipated, "law_dissipated", "dissipated by the laws since the start"}};
 }

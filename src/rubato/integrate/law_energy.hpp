@@ -3,18 +3,23 @@
 #include <rubato/integrate/energy_ledger.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <vector>
+
 namespace rubato::integrate {
 
 /// What a law of a structure dissipates over a motion without a turn, by its own formula [J].
 double dissipated_by_law(const system::LocallyNonlinear& system, Index law, const system::State& before,
                          const system::State& after);
 
+/// What laws store, then what they dissipate.
+std::vector<Account> accounts_of_laws();
+
 /// The energy of the laws of a structure beside sliders and stops.
 class LawEnergy final : public EnergyPart {
  public:
   explicit LawEnergy(const system::LocallyNonlinear& system) : system_(system) {}
 
-  std::vector<Account> accounts() const override;
+  std::vector<Account> accounts() const override { return accounts_of_laws(); }
   void add_stored(const system::State& state, Entries row) override;
   void add_flow(const system::State& before, const system::State& after, Entries row) override;
 

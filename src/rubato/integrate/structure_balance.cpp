@@ -34,7 +34,7 @@ bool StructureBalance::loads_jump(double t) {
   return !((right_ - left_).norm() <= 1e-12 * (right_.norm() + left_.norm()));
 }
 
-void StructureBalance::find_contact_forces(const system::State& before, system::State& state) const {
+void StructureBalance::find_contact_forces(const system::State& before, system::State& state) {
   for (Index i = 0; i < system_.slider_count(); ++i) {
     const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
     const double travel = system_.relative_displacement(i, state.q) - system_.relative_displacement(i, before.q);

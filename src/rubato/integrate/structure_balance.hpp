@@ -15,7 +15,7 @@ class StructureBalance final : public Balance {
   void add_swing_of_loads(std::span<const WeighedEnd> ends, system::State& state) override;
   bool loads_jump(double t) override;
   /// Sliders by their return map; stops follow from displacement and velocity.
-  void find_contact_forces(const system::State& before, system::State& state) const override;
+  void find_contact_forces(const system::State& before, system::State& state) override;
 
  private:
   const system::LocallyNonlinear& system_;

@@ -27,9 +27,6 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (!d.stops.empty())
     refuse(d.stops.front().where, "a [[stop]]",
            "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }");
-  if (!d.laws.empty())
-    refuse(d.laws.front().where, fmt::format("a [[{}]]", d.laws.front().kind),
-           "take a joint's own moment or force by a formula of its angle or displacement, its rate and t");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (!std::holds_alternative<std::monostate>(d.damping))
     refuse(where_of(d.damping), "[damping]",
@@ -85,6 +82,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   for (const JointDescription& joint : description.joints)
     (assembly.in_plane() ? take_plane_joint : take_space_joint)(assembly, joint);
   take_springs(assembly);
+  take_local_laws(assembly);
   for (const ForceDescription& force : description.forces) take_force(assembly, force);
   if (const auto& gravity = description.gravity)
     mechanism.gravity = assembly.point(gravity->acceleration, gravity->where, "[gravity]: acceleration");

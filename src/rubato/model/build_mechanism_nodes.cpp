@@ -131,29 +131,11 @@ void take_node(MechanismAssembly& assembly, const BuiltStructure& built, std::si
   }
 }
 
-NodeNumber number_of(const MechanismAssembly& assembly, const std::string& name, const Location& where,
-                     const std::string& part) {
-  if (name == "ground") return {};
-  const Mechanism& mechanism = assembly.mechanism;
-  const Index place = assembly.free_coordinate(name, where, part + " joins");
-  if (!assembly.in_plane() && mechanism.is_rotation[static_cast<std::size_t>(place)] != 0)
-    throw InvalidInput(where, fmt::format("{} joins \"{}\", a rotation in space, which is no number; give a revolute "
-                                          "joint \"stiffness\" or \"damping\"",
-                                          part, name));
-  for (std::size_t i = 0; i < mechanism.nodes.size(); ++i)
-    for (std::size_t axis = 0; axis < 6; ++axis)
-      if (mechanism.nodes[i].place[axis] == place)
-        return {
-            static_cast<Index>(i) * mechanism.numbers_a_node() + static_cast<Index>(axis == 5 ? std::size_t{2} : axis),
-            place};
-  return {};
-}
-
 std::array<NodeNumber, 2> ends_of(const MechanismAssembly& assembly, const Between& between,
                                   const std::array<Location, 2>& where, const std::string& part) {
-  const std::array<NodeNumber, 2> ends{number_of(assembly, between[0], where[0], part),
-                                       number_of(assembly, between[1], where[1], part)};
-  return ends;
+  const char* remedy = "give a revolute joint \"stiffness\" or \"damping\"";
+  return {number_of(assembly, between[0], where[0], part, remedy),
+          number_of(assembly, between[1], where[1], part, remedy)};
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
 void require_axes(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                   const JointPlaces& places) {
   using Type = JointDescription::Type;
-  const bool holds_points_only =
-      joint.type == Type::distance || joint.type == Type::strut || (joint.type == Type::revolute && !has_law(joint));
+  const bool holds_points_only = joint.type == Type::distance || joint.type == Type::strut ||
+                                 (joint.type == Type::revolute && !has_law(assembly, joint));
   for (std::size_t end = 0; end < 2; ++end) {
     const Index node = places.node[end];
     if (assembly.has_axes(node)) continue;
@@ -89,7 +89,7 @@ void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint
       ++assembly.elements;
       return;
     case Type::strut:
-      require_law(joint, part);
+      require_law(assembly, joint, part);
       (void)length_of(assembly, joint, part, places);
       mechanism.drawing.lines.push_back({DrawnLine::Kind::strut, end_of(a), end_of(b)});
       s.kind = PlaneCoordinate::Kind::length;

@@ -214,7 +214,7 @@ void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint
   const DrawnPoint one = draw(mechanism, first.point), two = draw(mechanism, second.point);
   mechanism.drawing.joints.push_back(drawn_joint(joint, one, two, drawn_axis(joint.type, first.axes)));
   if (joint.type == Type::strut) {
-    require_law(joint, part);
+    require_law(assembly, joint, part);
     (void)length_of(assembly, joint, part, places);
     mechanism.drawing.lines.push_back({DrawnLine::Kind::strut, one, two});
     ++assembly.elements;

@@ -139,6 +139,13 @@ int Mechanism::add_shared_friction(int leader, const FreeCoordinate& s, double a
   return index;
 }
 
+void Mechanism::add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
+                        std::shared_ptr<const Law> law) {
+  laws.push_back({name, kind, u, std::move(law), static_cast<Index>(laws.size()), law_memory_size, elements.size()});
+  law_memory_size += laws.back().law->memory_size();
+  elements.push_back(make_law_element(laws.back()));
+}
+
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
                                     const TimeLaw& law) {
   elements.push_back(make_following_force(name, point, axis, law));

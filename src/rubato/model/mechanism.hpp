@@ -4,6 +4,7 @@
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/joint_friction.hpp>
+#include <rubato/model/joints/law_element.hpp>
 #include <rubato/model/joints/lock.hpp>
 #include <rubato/model/joints/plane_point.hpp>
 #include <rubato/model/joints/prescribed_motion.hpp>
@@ -85,6 +86,8 @@ struct Mechanism {
   std::vector<Lock> locks;
   std::vector<PrescribedMotion> drives;
   std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
+  std::vector<MechanismLaw> laws;
+  Index law_memory_size = 0;  ///< of all laws together
   std::vector<NodeForce> forces;
   std::vector<TimeLaw> following_laws;  ///< of forces and moments that are elements, for when they are not smooth
   std::vector<numerics::Formula> joint_formulas;  ///< laws of joints that switch with time, for when they do
@@ -132,6 +135,10 @@ struct Mechanism {
   /// Adds a friction that shares its limit with another of the same joint: of the same coefficient, load and rows.
   /// @param arm  of its slip velocity over the rate of s
   int add_shared_friction(int leader, const FreeCoordinate& s, double arm);
+  /// Adds a law with the element that makes its force.
+  /// @param kind  its table in the study file
+  void add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
+               std::shared_ptr<const Law> law);
   /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
   void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);

@@ -117,6 +117,23 @@ Index MechanismAssembly::free_coordinate(const std::string& name, const Location
   throw InvalidInput(where, fmt::format("{} \"{}\", which is no coordinate{}", role, name, suggestion(name, known)));
 }
 
+NodeNumber number_of(const MechanismAssembly& assembly, const std::string& name, const Location& where,
+                     const std::string& part, const std::string& remedy) {
+  if (name == "ground") return {};
+  const Mechanism& mechanism = assembly.mechanism;
+  const Index place = assembly.free_coordinate(name, where, part + " joins");
+  if (!assembly.in_plane() && mechanism.is_rotation[static_cast<std::size_t>(place)] != 0)
+    throw InvalidInput(where,
+                       fmt::format("{} joins \"{}\", a rotation in space, which is no number; {}", part, name, remedy));
+  for (std::size_t i = 0; i < mechanism.nodes.size(); ++i)
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      if (mechanism.nodes[i].place[axis] == place)
+        return {
+            static_cast<Index>(i) * mechanism.numbers_a_node() + static_cast<Index>(axis == 5 ? std::size_t{2} : axis),
+            place};
+  return {};
+}
+
 JointPlaces take_places(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
   refuse_unfit_name(joint.name, joint.where);
   for (const std::string& other : assembly.joint_names)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/model/description.hpp>
+#include <rubato/model/joints/plane_spring.hpp>
 #include <rubato/model/mechanism.hpp>
 #include <rubato/model/quantity.hpp>
 
@@ -49,6 +50,11 @@ struct MechanismAssembly {
   Index free_coordinate(const std::string& name, const Location& where, const std::string& role) const;
 };
 
+/// Where in q the coordinate of a name stands; "ground" stands nowhere. Throws InvalidInput for a rotation in space.
+/// @param remedy  what to take instead of such a rotation
+NodeNumber number_of(const MechanismAssembly& assembly, const std::string& name, const Location& where,
+                     const std::string& part, const std::string& remedy);
+
 /// Where a joint holds its two parts, in the configuration given.
 struct JointPlaces {
   std::array<Index, 2> node{};  ///< 0: the ground
@@ -70,6 +76,7 @@ void take_body(MechanismAssembly& assembly, const BodyDescription& body);
 void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint);
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint);
 void take_springs(MechanismAssembly& assembly);
+void take_local_laws(MechanismAssembly& assembly);
 void take_force(MechanismAssembly& assembly, const ForceDescription& force);
 
 }  // namespace rubato::model

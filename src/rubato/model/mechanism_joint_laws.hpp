@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 // Private to the model floor: what a joint does to the coordinate that it leaves free, in the plane and in space alike.
 namespace rubato::model {
 
@@ -23,14 +25,16 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
 }
 
 /// Whether anything acts on the coordinate that a joint leaves free.
-inline bool has_law(const JointDescription& joint) {
+inline bool has_law(const MechanismAssembly& assembly, const JointDescription& joint) {
+  const auto& laws = assembly.description.laws;
   return joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping || joint.lock ||
-         joint.friction;
+         joint.friction ||
+         std::any_of(laws.begin(), laws.end(), [&](const LawDescription& law) { return law.joint == joint.name; });
 }
 
 /// Throws InvalidInput for a strut on which nothing acts: its length alone changes no motion.
-inline void require_law(const JointDescription& joint, const std::string& part) {
-  if (has_law(joint)) return;
+inline void require_law(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
+  if (has_law(assembly, joint)) return;
   throw InvalidInput(joint.where,
                      fmt::format("{} is a strut that does nothing; give it \"force\", \"stiffness\", \"damping\", "
                                  "\"drive\", \"lock\" or \"friction\"; force = 0 only measures its length",

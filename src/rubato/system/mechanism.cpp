@@ -86,6 +86,7 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   start_.q.tail(start_.q.size() - of_nodes).setZero();
   count_turns(start_.q, start_.q);
   start_.slider_force.resize(0);
+  start_.memory = Vector::Zero(model_.law_memory_size);
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
   start_.multiplier = Vector::Zero(constraint_count());
   start_.phase.assign(model_.locks.size(), model::lock_open);

@@ -19,7 +19,8 @@ void MechanismEquations::go_to(const State& state, model::Side side) {
              velocity_.data() + 1,
              state.phase.data(),
              state.rubbing.data(),
-             state.stuck_at.data()};
+             state.stuck_at.data(),
+             {nullptr, state.memory.data()}};
 }
 
 void MechanismEquations::scatter(const ElementPlace& place, const double* matrix, double weight) {
@@ -253,16 +254,19 @@ void MechanismEquations::force_of_loads(Vector& out) {
   external_force(out);
   out = -out;
   add_force_of(model::Element::Role::load, out);
+  add_laws_of_time(out);
 }
 
 void MechanismEquations::add_force_of(model::Element::Role role, Vector& out) {
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    if (elements_[e]->role() != role) continue;
-    const ElementPlace& place = element_places_[e];
-    elements_[e]->force(motion_, local_.data());
-    for (std::size_t i = 0; i < place.place.size(); ++i)
-      out[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
-  }
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    if (elements_[e]->role() == role) add_force_of(e, out);
+}
+
+void MechanismEquations::add_force_of(std::size_t element, Vector& out) {
+  const ElementPlace& place = element_places_[element];
+  elements_[element]->force(motion_, local_.data());
+  for (std::size_t i = 0; i < place.place.size(); ++i)
+    out[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
 }
 
 }  // namespace rubato::system

@@ -23,9 +23,21 @@ class MechanismEquations {
 
   const Mechanism& mechanism() const { return mechanism_; }
 
-  /// Goes to a state; what follows is evaluated there. Reads t, q, v and the phases.
+  /// Goes to a state; what follows is evaluated there. Reads t, q, v, the phases and the memory of the laws.
   /// @param side  which limit to take of a load that jumps at t
   void go_to(const State& state, model::Side side);
+  /// The state from which go_to_end() and move_laws() lead.
+  void begin_step(const State& from);
+  /// Goes to a state that a step leads to from where it began: of laws with a memory the one at its start counts, from
+  /// which they follow the motion without a turn. Otherwise as go_to().
+  void go_to_end(const State& to, model::Side side);
+  /// Writes the memory of the laws at a state to which the motion leads from where the step began.
+  void move_laws(State& to);
+  /// The same, from a state in which it begins.
+  void move_laws(const State& from, State& to) {
+    begin_step(from);
+    move_laws(to);
+  }
 
   /// Writes f [n] and g [c].
   void residual(Vector& force, Vector& constraint);
@@ -117,6 +129,13 @@ class MechanismEquations {
   void set_slip_floors(const State& from, double h, State& to);
   double friction_rate(std::size_t friction) const;  ///< of its coordinate [rad/s] or [m/s]
   double friction_acceleration(std::size_t friction, const Vector& acceleration);  ///< [rad/s^2] or [m/s^2]
+  /// What the laws store at a state, and what each of them dissipates from one state to another to which the motion
+  /// leads without a turn [J].
+  double stored_by_laws(const State& state);
+  void dissipated_by_laws(const State& from, const State& to, Vector& dissipated);
+  /// Force and displacement of a law where go_to() led [N] and [m], or [N m] and [rad].
+  double law_force(std::size_t law) const;
+  double law_displacement(std::size_t law) const;
   /// The share of all loads in f: of forces, gravity and laws of joints, and so of all that follows time itself [n].
   void force_of_loads(Vector& out);
   /// External forces by laws of t, and gravity [n].
@@ -165,6 +184,10 @@ class MechanismEquations {
   void scatter(const ElementPlace& place, const double* matrix, double weight);
   void elements_and_loads(Vector& force);
   void add_force_of(model::Element::Role role, Vector& out);
+  void add_force_of(std::size_t element, Vector& out);
+  void add_laws_of_time(Vector& out);
+  /// What law j sees at a state. Leaves the equations where they are.
+  model::LawPoint law_point(std::size_t j, const State& state, model::Side side);
 
   const Mechanism& mechanism_;
   std::vector<std::unique_ptr<model::Element>> elements_;
@@ -184,6 +207,9 @@ class MechanismEquations {
   std::vector<double> negligible_, negligible_rate_;  // of each friction
   Vector excess_;  // of the reactions that friction follows, over the multipliers [c]
   model::Motion motion_;
+  std::vector<model::LawPoint> step_start_;  // of the laws
+  std::vector<double> start_memory_;         // of all laws there
+  std::vector<double> other_velocity_;       // after a zero, of a state to which the equations do not go
   numerics::KktFactor factor_;
   int factorisations_ = 0;
 };

@@ -51,7 +51,9 @@ MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(
   local_.assign(std::max(largest, widest), 0.0);
   matrix_.assign(largest * largest, 0.0);
   velocity_.assign(static_cast<std::size_t>(mechanism.size()) + 1, 0.0);
-  acceleration_ = velocity_;
+  acceleration_ = other_velocity_ = velocity_;
+  step_start_.resize(model.laws.size());
+  start_memory_.assign(static_cast<std::size_t>(model.law_memory_size), 0.0);
   const Vector diagonal = mechanism.mass().diagonal();
   for (const double mass : diagonal) inverse_mass_.push_back(1.0 / mass);
   row_seen_.assign(static_cast<std::size_t>(mechanism.constraint_count()), 0.0);

@@ -15,7 +15,7 @@ struct State {
   /// fc of each slider [N], its history; then fs of each stop [N], which follows from q and v but for its jumps; then f
   /// of each other law [N]
   Vector slider_force;
-  Vector memory;  ///< of the other laws, one after another: their history
+  Vector memory;  ///< of the other laws, and of the laws of a mechanism, one after another: their history
   /// The acceleration that a method of the alpha family weights (that of equilibrium at a shifted time), [n] [m/s2].
   /// What is reported is system::LocallyNonlinear::acceleration instead. Methods that need none leave it as it is.
   Vector auxiliary_acceleration;

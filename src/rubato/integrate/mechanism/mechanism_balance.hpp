@@ -19,7 +19,9 @@ class MechanismBalance final : public Balance {
   void add_swing_of_loads(std::span<const WeighedEnd> ends, system::State& state) override;
   /// Marches of mechanisms end steps at jumps, and go on with another acceleration.
   bool loads_jump(double) override { return false; }
-  void find_contact_forces(const system::State&, system::State&) const override {}
+  void find_contact_forces(const system::State& before, system::State& state) override {
+    equations_.move_laws(before, state);
+  }
 
  private:
   /// Whether a joint that sticks would have to hold more than its friction can.

@@ -47,7 +47,7 @@ Zero first_zero(double least, double y0, double slope0, double y1, double slope1
 }  // namespace
 
 void MechanismTimeline::interpolate(const system::State& from, const system::State& to, double share,
-                                    system::State& out) const {
+                                    system::State& out) {
   const double h = to.t - from.t, rest = 1.0 - share;
   const double passed = share * share * (1.0 + 2.0 * rest), first = h * share * rest * rest,
                last = -h * share * share * rest;
@@ -56,6 +56,7 @@ void MechanismTimeline::interpolate(const system::State& from, const system::Sta
   mechanism_.difference(from.q, to.q, out.v);
   mechanism_.retract(from.q, passed * out.v + first * from.v + last * to.v, out.q);
   out.v = rest * from.v + share * to.v;
+  equations_.move_laws(from, out);
 }
 
 Crossing MechanismTimeline::first_passage(std::size_t i, const system::State& from, const system::State& to,

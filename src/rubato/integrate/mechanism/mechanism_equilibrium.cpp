@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rubato::integrate {
 namespace {
@@ -157,7 +158,7 @@ class Search {
   /// The residual under a share of the loads, and the matrix  K + shift M. Returns the largest force that is left.
   double linearise(double shift, double load = 1.0) {
     const system::MechanismEquations::Weights weights{shift, 0.0, 1.0, scale_};
-    equations_.go_to(found_.state, model::Side::right);
+    equations_.go_to_end(found_.state, model::Side::right);
     equations_.linearise(weights, found_.state.multiplier, force_, constraint_);
     if (load != 1.0) equations_.scale_loads(load, weights, force_);
     equations_.add_constraint_force(found_.state.multiplier, 1.0, force_);
@@ -231,10 +232,10 @@ class Search {
     for (Index i = 0; i < n; ++i) along[i] = sizes_[i] * std::sin(1.0 + 2.4 * static_cast<double>(i));
     constexpr double step = 1e-6;
     system::State moved = found_.state;
-    equations_.go_to(found_.state, model::Side::right);
+    equations_.go_to_end(found_.state, model::Side::right);
     equations_.residual(before, constraint_);
     mechanism_.retract(found_.state.q, step * along, moved.q);
-    equations_.go_to(moved, model::Side::right);
+    equations_.go_to_end(moved, model::Side::right);
     equations_.residual(after, constraint_);
     mechanism_.times_mass(along, product_);
     const double mass = along.dot(product_);
@@ -313,14 +314,23 @@ MechanismEquilibrium by_load_steps(system::MechanismEquations& equations, const 
 
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan) {
-  MechanismEquilibrium at_once = Search(equations, given, plan).downhill();
-  if (at_once.is_found || at_once.unsettled_lock >= 0) return at_once;
-  MechanismEquilibrium raised = by_load_steps(equations, given, plan);
-  raised.iterations += at_once.iterations;
-  if (raised.load > 0.0) return raised;
-  at_once.iterations = raised.iterations;
-  at_once.load = 0.0;
-  return at_once;
+  // However far the search goes, laws see one way without a turn from the configuration given.
+  system::State at_rest = given;
+  at_rest.v.setZero();
+  equations.begin_step(at_rest);
+  MechanismEquilibrium found = Search(equations, given, plan).downhill();
+  if (!found.is_found && found.unsettled_lock < 0) {
+    MechanismEquilibrium raised = by_load_steps(equations, given, plan);
+    raised.iterations += found.iterations;
+    if (raised.load > 0.0) {
+      found = std::move(raised);
+    } else {
+      found.iterations = raised.iterations;
+      found.load = 0.0;
+    }
+  }
+  equations.move_laws(found.state);
+  return found;
 }
 
 }  // namespace rubato::integrate

@@ -35,9 +35,10 @@ struct MechanismEquilibrium {
 /// Where that finds none, the loads (forces, gravity, laws of joints) are raised from zero by steps, each from the
 /// equilibrium of the last by Newton's method alone: a step that fails is halved, the next after one that succeeds
 /// twice as long. So the way of a structure under a growing load is followed, as far as no limit point stops it,
-/// through equilibria that are not stable too. Drives are held where they are at that time; friction is left out.
-/// Locks that the way meets hold as long as they press, those that held at the start too; latches that did hold for
-/// good.
+/// through equilibria that are not stable too. Laws with a memory follow a single way without a turn from the
+/// configuration given to that of equilibrium, as if all of them were loaded from what they remember. Drives are held
+/// where they are at that time; friction is left out. Locks that the way meets hold as long as they press, those that
+/// held at the start too; latches that did hold for good.
 /// @param given  t, configuration and phases of locks count
 MechanismEquilibrium find_equilibrium(system::MechanismEquations& equations, const system::State& given,
                                       const EquilibriumPlan& plan = {});

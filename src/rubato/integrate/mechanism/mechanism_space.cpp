@@ -67,10 +67,11 @@ class MechanismSpace final : public ErrorSpace {
     constexpr double small = 1e-6;
     const double way = small * extent_ / length;
     double work = 0.0;
+    equations_.begin_step(state);
     for (const double sign : {1.0, -1.0}) {
       moved_ = state;
       mechanism_.retract(state.q, (sign * way) * x, moved_.q);
-      equations_.go_to(moved_, model::Side::right);
+      equations_.go_to_end(moved_, model::Side::right);
       equations_.residual(force_, constraint_);
       equations_.add_constraint_force(state.multiplier, 1.0, force_);
       work += sign * x.dot(force_);

@@ -258,13 +258,19 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
 
 void shift_acceleration(system::MechanismEquations& equations, system::State& state, double shifted_by) {
   if (shifted_by == 0.0) return;
+  // A law with a memory knows the way that it goes on, and not the one back.
+  const bool goes_on = equations.mechanism().model().law_memory_size > 0;
+  const double way = goes_on ? std::abs(shifted_by) : shifted_by;
   system::State ahead = state;
-  ahead.t += shifted_by;
-  equations.mechanism().retract(state.q, shifted_by * state.v + (0.5 * shifted_by * shifted_by) * state.acceleration,
-                                ahead.q);
-  ahead.v += shifted_by * state.acceleration;
-  if (find_acceleration(equations, ahead, shifted_by > 0.0 ? model::Side::left : model::Side::right))
+  ahead.t += way;
+  equations.mechanism().retract(state.q, way * state.v + (0.5 * way * way) * state.acceleration, ahead.q);
+  ahead.v += way * state.acceleration;
+  if (goes_on) equations.move_laws(state, ahead);
+  if (!find_acceleration(equations, ahead, way > 0.0 ? model::Side::left : model::Side::right)) return;
+  if (way == shifted_by)
     state.auxiliary_acceleration = ahead.acceleration;
+  else
+    state.auxiliary_acceleration = 2.0 * state.acceleration - ahead.acceleration;
 }
 
 }  // namespace rubato::integrate

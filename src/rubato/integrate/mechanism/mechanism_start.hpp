@@ -53,8 +53,8 @@ bool add_acceleration(system::MechanismEquations& equations, system::State& stat
                       const Vector& rate);
 
 /// The auxiliary acceleration of a method that carries that at t + shift h: A = a + shift h da/dt, with da/dt from the
-/// accelerations at both ends of a short motion. Multipliers are of second order only with this start (Arnold, Bruels
-/// and Cardona 2015).
+/// accelerations at both ends of a short motion, of mechanisms that remember always the one that follows. Multipliers
+/// are of second order only with this start (Arnold, Bruels and Cardona 2015).
 void shift_acceleration(system::MechanismEquations& equations, system::State& state, double shifted_by);
 
 }  // namespace rubato::integrate

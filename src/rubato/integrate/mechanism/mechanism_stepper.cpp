@@ -50,6 +50,8 @@ class MechanismStepper final : public Stepper {
     to.rubbing = from.rubbing;
     to.stuck_at = from.stuck_at;
     equations_.set_slip_floors(from, h, to);
+    equations_.begin_step(from);
+    to.memory = from.memory;
     to.slider_force = from.slider_force;
     to.multiplier = from.multiplier;
     to.reaction_lag = from.reaction_lag;
@@ -88,7 +90,7 @@ class MechanismStepper final : public Stepper {
     double evaluate(bool with_tangent) {
       if (!is_first) s.take_correction();
       s.place(from, h, to);
-      s.equations_.go_to(to, model::Side::left);
+      s.equations_.go_to_end(to, model::Side::left);
       if (with_tangent) {
         const double mean = (1.0 - s.p_.alpha_f) / (1.0 - s.p_.alpha_m);
         s.equations_.linearise({1.0, mean * s.p_.gamma * h, s.scale_, 0.0, true, is_wary}, to.multiplier, s.force_,
@@ -223,7 +225,8 @@ class MechanismStepper final : public Stepper {
       if (!project(is_placed, to)) return fault(StepOutcome::singular);
       if (has_followed_reactions_) to.reaction_lag = (1.0 / (h * h)) * constraint_;
     }
-    if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite()) return {};
+    equations_.move_laws(to);
+    if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite() && to.memory.allFinite()) return {};
     return fault(StepOutcome::not_finite);
   }
 
@@ -250,7 +253,7 @@ class MechanismStepper final : public Stepper {
   /// up for the same difference, so that over h it is what they lack of the reactions.
   bool project(bool is_placed, system::State& to) {
     if (!is_placed) {
-      equations_.go_to(to, model::Side::left);
+      equations_.go_to_end(to, model::Side::left);
       equations_.constraints(constraint_);
     }
     if (!equations_.has_sliding_reactions()) {

@@ -55,11 +55,13 @@ std::vector<double> MechanismTimeline::breakpoints(double from, double to) const
     }
   }
   joint_switches_.clear();
-  for (const auto& formula : mechanism_.model().joint_formulas) {
-    const std::vector<double> found = formula.switches(from, to), pieces = model::with_eighths(found);
+  const auto take_law = [&](const std::vector<double>& found) {
+    const std::vector<double> pieces = model::with_eighths(found);
     joint_switches_.insert(joint_switches_.end(), found.begin(), found.end());
     switches.insert(switches.end(), pieces.begin(), pieces.end());
-  }
+  };
+  for (const auto& formula : mechanism_.model().joint_formulas) take_law(formula.switches(from, to));
+  for (const auto& law : mechanism_.model().laws) take_law(law.law->breakpoints(from, to));
   std::sort(joint_switches_.begin(), joint_switches_.end());
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());

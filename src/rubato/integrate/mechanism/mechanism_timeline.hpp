@@ -89,7 +89,7 @@ class MechanismTimeline final : public Timeline {
   GuardValue guard_at(std::size_t lock, const system::State& state, const Vector& floors);
   /// The state at a share of a step, by the cubic of its positions and the chord of its velocities: slopes of
   /// velocities are those of vibrations too, and what is stiffly damped would turn their errors into forces.
-  void interpolate(const system::State& from, const system::State& to, double share, system::State& out) const;
+  void interpolate(const system::State& from, const system::State& to, double share, system::State& out);
   /// Where a guard without a rate first passes zero; after a share of 2: nowhere. Its values at both ends and in
   /// the middle give a parabola; where that turns round close to zero the guard is looked at.
   Crossing first_passage(std::size_t guard, const system::State& from, const system::State& to, double least,

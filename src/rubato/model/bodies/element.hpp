@@ -36,9 +36,10 @@ class Element {
   /// Whether its slopes may jump where q or v pass some value.
   virtual bool has_kinks() const { return false; }
 
-  /// What it stores [J]; the rest of its work is that of a load or of a damper, as `role` says.
+  /// What it stores [J]; the rest of its work is that of a load or of a damper, as `role` says. Laws keep accounts of
+  /// their own.
   virtual double stored_energy(const Motion&) const { return 0.0; }
-  enum class Role { elastic, damper, load };
+  enum class Role { elastic, damper, load, law };
   virtual Role role() const { return Role::elastic; }
 
  protected:

@@ -5,6 +5,14 @@
 
 namespace rubato::model {
 
+struct LawPoint;
+
+/// What the laws of a mechanism know of what has been.
+struct LawHistory {
+  const LawPoint* from = nullptr;  ///< of each: where the step starts in which the motion is; null: it stands there
+  const double* memory = nullptr;  ///< of all, at that start
+};
+
 /// Where a mechanism is, as its elements and joints read it. Nothing is owned.
 ///
 /// A plane node has three numbers in q (x, y, angle), a spatial one seven (x, y, z, and a unit quaternion w, x, y, z
@@ -19,6 +27,7 @@ struct Motion {
   const int* phase = nullptr;        ///< of the locks: see JointLock
   const int* rubbing = nullptr;      ///< of the joints with friction: see JointFriction
   const double* stuck_at = nullptr;  ///< where they last stuck [rad] or [m]
+  LawHistory laws = {};
 };
 
 inline constexpr int plane_numbers = 3, space_numbers = 7;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <rubato/core/error.hpp>
-#include <rubato/model/bodies/element.hpp>
+#include <rubato/model/joints/coordinate_force.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/numerics/formula.hpp>
@@ -22,65 +22,28 @@
 // A coordinate has tangent_size, value, slope, curvature and rate, as PlaneCoordinate has.
 namespace rubato::model {
 
-/// A force on s: what a law says of (s, s', t), turned into forces on the nodes.
+/// A force on s by a law of (s, s', t) without a memory.
 template <class Coordinate>
-class CoordinateLaw : public Element {
- protected:
-  static constexpr int k = Coordinate::tangent_size;
+class CoordinateLaw : public CoordinateForce<Coordinate> {
+  using Base = CoordinateForce<Coordinate>;
 
  public:
-  CoordinateLaw(std::string name, const Coordinate& s, const AtLock& when)
-      : Element(std::move(name)), s_(s), when_(when) {
-    places_ = s.places();
-  }
-
-  void force(const Motion& motion, double* force) const override {
-    std::fill(force, force + k, 0.0);
-    if (!when_.is_at_work(motion)) return;
-    double slope[k];
-    s_.slope(motion.q, slope);
-    const double applied = law(s_.value(motion.q), s_.rate(motion), time_of(motion));
-    for (int i = 0; i < k; ++i) force[i] = -applied * slope[i];
-  }
-
-  void tangent(const Motion& motion, double stiffness, double damping, double* force, double* tangent) const override {
-    std::fill(force, force + k, 0.0);
-    std::fill(tangent, tangent + k * k, 0.0);
-    if (!when_.is_at_work(motion)) return;
-    double slope[k], rate_slope[k], by_s = 0.0, by_rate = 0.0;
-    s_.slope(motion.q, slope);
-    const double s = s_.value(motion.q), rate = s_.rate(motion), t = time_of(motion), applied = law(s, rate, t);
-    law_slopes(s, rate, t, by_s, by_rate);
-    if (!s_.has_constant_slope()) {
-      s_.curvature(motion.q, 1.0, tangent);
-      for (int i = 0; i < k; ++i) {  // ds'/dq = v curvature
-        rate_slope[i] = 0.0;
-        for (int j = 0; j < k; ++j) rate_slope[i] += motion.v[places_[std::size_t(j)]] * tangent[j * k + i];
-      }
-      for (int i = 0; i < k * k; ++i) tangent[i] *= -stiffness * applied;
-    } else {
-      std::fill(rate_slope, rate_slope + k, 0.0);
-    }
-    for (int i = 0; i < k; ++i) {
-      force[i] = -applied * slope[i];
-      for (int j = 0; j < k; ++j)
-        tangent[i * k + j] -=
-            slope[i] * ((stiffness * by_s + damping * by_rate) * slope[j] + stiffness * by_rate * rate_slope[j]);
-    }
-  }
-
-  bool has_symmetric_tangent() const override {
-    return s_.has_constant_slope() || (Coordinate::has_symmetric_curvature && !depends_on_rate());
-  }
+  CoordinateLaw(std::string name, const Coordinate& s, const AtLock& when) : Base(std::move(name), s), when_(when) {}
 
  protected:
   virtual double law(double s, double rate, double t) const = 0;
   virtual void law_slopes(double s, double rate, double t, double& by_s, double& by_rate) const = 0;
-  virtual bool depends_on_rate() const = 0;
   /// Of a law that switches with time: just before or after, as the side says.
   virtual double time_of(const Motion& motion) const { return motion.t; }
 
-  Coordinate s_;
+  bool is_at_work(const Motion& motion) const override { return when_.is_at_work(motion); }
+  LawAnswer answer(const Motion& motion, double s, double rate, bool with_slopes) const override {
+    const double t = time_of(motion);
+    LawAnswer result{law(s, rate, t), 0.0, 0.0};
+    if (with_slopes) law_slopes(s, rate, t, result.by_u, result.by_rate);
+    return result;
+  }
+
   AtLock when_;
 };
 

@@ -12,25 +12,27 @@ LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
   }
 }
 
+void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout) {
+  if (laws.empty()) return;
+  const char* dimension = is_rotation ? "rotational_law" : "law";
+  if (is_rotation) {
+    layout.blocks.push_back({"moment", "N m", "moment of a law; -moment acts along its u", dimension, laws});
+    layout.blocks.push_back({"angle", "rad", "u of a law", dimension, laws});
+  } else {
+    layout.blocks.push_back({"force", "N", "force of a law; -force acts along its u", dimension, laws});
+    layout.blocks.push_back({"displacement", "m", "u of a law", dimension, laws});
+  }
+  if (has_dissipated)
+    layout.blocks.push_back({"dissipated", "J", "dissipated by a law since the start", dimension, laws});
+}
+
 void LawColumns::add(TableLayout& layout) const {
-  const auto add_kind = [&](const std::vector<Index>& laws, bool is_rotation) {
-    if (laws.empty()) return;
-    std::vector<std::string> labels;
-    for (const Index j : laws) labels.push_back(system_.laws()[static_cast<std::size_t>(j)].name);
-    const char* dimension = is_rotation ? "rotational_law" : "law";
-    if (is_rotation) {
-      layout.blocks.push_back(
-          {"moment", "N m", "moment of a law; -moment acts on the first coordinate", dimension, labels});
-      layout.blocks.push_back({"angle", "rad", "u of a law, first - second", dimension, labels});
-    } else {
-      layout.blocks.push_back({"force", "N", "force of a law; -force acts on the first coordinate", dimension, labels});
-      layout.blocks.push_back({"displacement", "m", "u of a law, first - second", dimension, labels});
-    }
-    if (in_motion_)
-      layout.blocks.push_back({"dissipated", "J", "dissipated by a law since the start", dimension, labels});
-  };
-  add_kind(of_displacements_, false);
-  add_kind(of_rotations_, true);
+  for (const bool is_rotation : {false, true}) {
+    std::vector<std::string> names;
+    for (const Index j : is_rotation ? of_rotations_ : of_displacements_)
+      names.push_back(system_.laws()[static_cast<std::size_t>(j)].name);
+    add_law_blocks(names, is_rotation, in_motion_, layout);
+  }
 }
 
 void LawColumns::book(const system::State& before, const system::State& after) {

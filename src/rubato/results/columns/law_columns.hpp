@@ -3,9 +3,13 @@
 #include <rubato/results/columns/column_group.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <string>
 #include <vector>
 
 namespace rubato::results {
+
+/// The blocks of some laws: `force` and `displacement`, of those on angles `moment` and `angle`, and `dissipated`.
+void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout);
 
 /// Columns of the laws beside sliders and stops: `force` and `displacement`, of those between rotations `moment` and
 /// `angle`; in a motion `dissipated` since its start as well.

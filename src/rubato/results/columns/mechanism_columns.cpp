@@ -4,6 +4,7 @@
 #include <rubato/results/columns/joint_laws.hpp>
 #include <rubato/results/columns/joint_reactions.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
+#include <rubato/results/columns/mechanism_law_columns.hpp>
 
 namespace rubato::results {
 
@@ -16,18 +17,21 @@ ColumnGroups columns_of_motion(system::MechanismEquations& equations, const std:
   groups.push_back(std::make_unique<JointReactions>(mechanism));
   groups.push_back(std::make_unique<JointFrictions>(equations));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
+  if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, true));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, ""));
   return groups;
 }
 
-ColumnGroups columns_of_equilibrium(const system::Mechanism& mechanism, const std::vector<Observed>& observed,
+ColumnGroups columns_of_equilibrium(system::MechanismEquations& equations, const std::vector<Observed>& observed,
                                     const model::SectionForcesDescription& section_forces, const std::string& title) {
+  const system::Mechanism& mechanism = equations.mechanism();
   ColumnGroups groups;
   groups.push_back(
       std::make_unique<JointAngles>(mechanism, observed, std::vector{ObservedColumns::Quantity::position}));
   groups.push_back(std::make_unique<JointDisplacements>(mechanism));
   groups.push_back(std::make_unique<JointReactions>(mechanism));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
+  if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, false));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, title));
   return groups;
 }
