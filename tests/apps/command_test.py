@@ -68,7 +68,7 @@ class Command(CommandCase):
                 (["run"], "error: name the study file: rubato run STUDY.toml\n"),
                 ([], "error: A subcommand is required\n`rubato --help` says more\n"),
                 (["rnu", study], 'error: the subcommand or option "rnu" is unknown; did you mean "run"? '
-                                 '(known: run, check, methods, laws, example, compare, schema, --help, --version)\n'
+                                 '(known: run, check, methods, laws, example, compare, schema, --help, ...)\n'
                                  '`rubato --help` says more\n')]:
             result = self.run_command(*arguments)
             self.assertEqual((result.returncode, result.stdout), (2, ""), arguments)
