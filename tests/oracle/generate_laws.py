@@ -10,7 +10,7 @@ import numpy
 
 from generate import Generator
 from structure.model import read_model
-from study import Study
+from study import Study, Unreadable
 
 FIRST, LAST = 30001, 34999
 
@@ -156,8 +156,11 @@ def generate(seed, folder):
     generator = WithLaws(seed, folder)
     while True:
         path = generator.build()
-        if generator.tables["analysis"] and _fastest(read_model(Study(path))) * generator.duration < 5000:
-            return path, generator.kind
+        try:
+            if generator.tables["analysis"] and _fastest(read_model(Study(path))) * generator.duration < 5000:
+                return path, generator.kind
+        except Unreadable:  # a law on a rotation that all beams release
+            pass
         generator = WithLaws(generator.random.random(), folder)
 
 

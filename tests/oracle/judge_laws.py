@@ -72,7 +72,7 @@ def transient(model, table, rows, got, pick, times, allowed, observed_all, ends,
         if header:
             lost, stored = rows["law_dissipated"][:, i], rows["law_stored"][:, i]
             whole = max(numpy.max(numpy.abs(lost)), numpy.ptp(stored), 1e-12 * size_u * size_f, 1e-300)
-            checks.append((header, numpy.max(numpy.abs(told[pick] - lost)) / whole, max(10 * allowed, 1e-6) * max(1.0, share)))
+            checks.append((header, numpy.max(numpy.abs(told[pick] - lost)) / whole, max(10 * allowed, 1e-2 if step else 1e-6) * max(1.0, share)))
     return checks
 
 
