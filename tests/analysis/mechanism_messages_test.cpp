@@ -1,5 +1,6 @@
-#include <rubato/analysis/mechanism_failure.hpp>
+#include <rubato/analysis/failure_text.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <support/laid_studies.hpp>
 
 #include <support/mechanism_study.hpp>
@@ -263,10 +264,12 @@ TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
   report.failed_step = 1e-9;
   const std::vector<integrate::LockEvent> events{
       {0.5, 0, true, 0.0, -1}, {1.0, 1, true, 0.0, -1}, {1.5, 0, false, 0.0, -1}};
-  const std::string told = analysis::failure_of(report, mechanism, mechanism.start(), {-1, events}, "");
+  const std::string told =
+      analysis::text_of(integrate::failure_of(report, mechanism, mechanism.start(), {-1, events}), "");
   EXPECT_THAT(told, HasSubstr("crawled: the last 2,000 steps were shorter than 1e-8 of the run; the last to change: "
                               "\"nut\" (lets go at t = 1.5 s), \"bearing\" (locks at t = 1 s);"));
-  EXPECT_THAT(analysis::failure_of(report, mechanism, mechanism.start(), {}, ""), Not(HasSubstr("change")));
+  EXPECT_THAT(analysis::text_of(integrate::failure_of(report, mechanism, mechanism.start(), {}), ""),
+              Not(HasSubstr("change")));
 }
 
 // Numbers whose squares no double holds: an inertia in the unit of another planet.

@@ -1,5 +1,6 @@
-#include <rubato/analysis/mechanism_failure.hpp>
+#include <rubato/analysis/failure_text.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
 
 #include <support/double_pendulum.hpp>
@@ -366,7 +367,7 @@ TEST(MechanismFailures, NameTheSingularConfigurationNextToWhichTheyAre) {
     system::State state = mechanism.start();
     const double c = std::cos(angle), s = std::sin(angle);
     state.q.tail<9>() << 0.5 * c, 0.5 * s, angle, 1.0 + 0.5 * c, 0.5 * s, angle, 0.5 + c, s, 0.0;
-    return analysis::failure_of(report, mechanism, state, {}, "");
+    return analysis::text_of(integrate::failure_of(report, mechanism, state, {}), "");
   };
   // In line the four hinges ask twice that the bars keep their distance along it: nine coordinates and eight rows, of
   // which seven say something of their own.

@@ -1,3 +1,4 @@
+#include <rubato/analysis/failure_text.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
 #include <rubato/analysis/mechanism_start_state.hpp>
@@ -122,7 +123,8 @@ system::State reach(const std::string& name, const MechanismModesPlan::Reached& 
   context.progress.end();
   if (marched.march.end == integrate::MarchEnd::failed) {
     report.status = RunStatus::failed;
-    report.message = march->failure(marched.march);
+    const integrate::MarchFailure failure = march->failure(marched.march);
+    report.message = text_of(failure, advice_on_step(failure, reached.motion));
   } else if (march->state().t < reached.time) {
     report.status = RunStatus::interrupted;
     report.message = fmt::format("interrupted at t = {} s of {} s", march->state().t, reached.time);

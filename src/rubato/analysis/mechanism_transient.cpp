@@ -1,10 +1,10 @@
 #include <rubato/analysis/load_checks.hpp>
 #include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_events.hpp>
-#include <rubato/analysis/mechanism_failure.hpp>
 #include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
+#include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_space.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
@@ -21,8 +21,7 @@
 namespace rubato::analysis {
 namespace {
 
-constexpr double resolution = 1e-12;      // of events, over the duration
-constexpr double least_tolerance = 1e-9;  // below, steps measure what Newton's method leaves: see the known issues
+constexpr double resolution = 1e-12;  // of events, over the duration
 
 Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
 
@@ -145,16 +144,8 @@ class MechanismMarch final : public TransientMarch {
     return integrate::march(*stepper_, *estimator_, plan_.automatic->plan, timeline_, state_, end, observer, log);
   }
 
-  std::string failure(const integrate::MarchReport& report) const override {
-    const AutomaticStep& step = *plan_.automatic;
-    const std::string advice =
-        !has_equal_steps(plan_) && step.tolerance < least_tolerance
-            ? fmt::format(
-                  "the tolerance {:.3g} is below {:.3g}, where the error of a step is what Newton's method leaves: "
-                  "take a larger one",
-                  step.tolerance, least_tolerance)
-            : advice_on_smallest(step.plan, plan_.duration);
-    return failure_of(report, mechanism_, state_, {timeline_.chattering(), timeline_.events()}, advice);
+  integrate::MarchFailure failure(const integrate::MarchReport& report) const override {
+    return integrate::failure_of(report, mechanism_, state_, {timeline_.chattering(), timeline_.events()});
   }
 
   void conclude(const std::string& name, const integrate::AdaptiveReport& report, results::Sink& sink,

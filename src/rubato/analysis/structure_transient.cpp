@@ -1,13 +1,13 @@
 #include <rubato/analysis/exact_transient.hpp>
 #include <rubato/analysis/load_checks.hpp>
 #include <rubato/analysis/static.hpp>
-#include <rubato/analysis/structure_failure.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/load_jumps.hpp>
 #include <rubato/integrate/stability.hpp>
 #include <rubato/integrate/structure_balance.hpp>
 #include <rubato/integrate/structure_energy.hpp>
+#include <rubato/integrate/structure_failure.hpp>
 #include <rubato/results/columns/structure_columns.hpp>
 
 #include <fmt/format.h>
@@ -84,8 +84,8 @@ class StructureMarch final : public TransientMarch {
     return report;
   }
 
-  std::string failure(const integrate::MarchReport& report) const override {
-    return failure_of(report, plan_, system_);
+  integrate::MarchFailure failure(const integrate::MarchReport& report) const override {
+    return integrate::failure_of(report, system_);
   }
 
   void conclude(const std::string&, const integrate::AdaptiveReport&, results::Sink&, RunReport& run) const override {

@@ -1,3 +1,4 @@
+#include <rubato/analysis/failure_text.hpp>
 #include <rubato/analysis/transient_kind.hpp>
 #include <rubato/analysis/transient_observer.hpp>
 #include <rubato/integrate/catalogue.hpp>
@@ -67,7 +68,8 @@ RunReport TransientKind::run(const std::string& name, const TransientPlan& plan,
   march->conclude(name, report, context.sink, run);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
-    run.message = march->failure(report.march);
+    const integrate::MarchFailure failure = march->failure(report.march);
+    run.message = text_of(failure, advice_on_step(failure, plan));
   } else if (report.march.end == integrate::MarchEnd::stopped && state.t < plan.duration) {
     run.status = RunStatus::interrupted;
     run.message = fmt::format("interrupted at t = {:.6g} s of {} s", state.t, plan.duration);
