@@ -1,7 +1,7 @@
-#include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
@@ -175,8 +175,8 @@ void automatic_steps(const system::LocallyNonlinear& system, system::State state
 
 system::State released(const system::LocallyNonlinear& system) {
   const auto equilibrium =
-      timed("static start", [&] { return analysis::find_equilibrium(system, system.held_displacements()); });
-  if (equilibrium.outcome != analysis::StaticOutcome::found) throw InvalidInput("no static start");
+      timed("static start", [&] { return integrate::find_equilibrium(system, system.held_displacements()); });
+  if (equilibrium.outcome != integrate::StaticOutcome::found) throw InvalidInput("no static start");
   return integrate::consistent_start(system, equilibrium.state);
 }
 

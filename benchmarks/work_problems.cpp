@@ -1,7 +1,7 @@
 #include "work_problems.hpp"
 
-#include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/integrate/stepper.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
@@ -29,8 +29,8 @@ WorkProblem from_rest(std::string name, Kind kind, bool is_linear, system::Local
 WorkProblem from_equilibrium(std::string name, Kind kind, bool is_linear, system::LocallyNonlinear system,
                              std::size_t held, double duration) {
   const auto& all = system.held_displacements();
-  const auto equilibrium = analysis::find_equilibrium(system, {all.data(), std::min(held, all.size())});
-  if (equilibrium.outcome != analysis::StaticOutcome::found) throw InvalidInput(name + ": no static start");
+  const auto equilibrium = integrate::find_equilibrium(system, {all.data(), std::min(held, all.size())});
+  if (equilibrium.outcome != integrate::StaticOutcome::found) throw InvalidInput(name + ": no static start");
   system::State start = integrate::consistent_start(system, equilibrium.state);
   return {std::move(name), kind, is_linear, std::move(system), std::move(start), duration};
 }

@@ -1,6 +1,6 @@
 #include <rubato/analysis/modes.hpp>
-#include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/analysis/structure_transient.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
 
@@ -17,6 +17,8 @@
 
 namespace rubato::analysis {
 namespace {
+
+using integrate::find_equilibrium;
 
 /// The frame bent by 6 mm at node 1 and, in the cases PMM, by 10 mm at node 5.
 model::ModelDescription bent_frame(bool with_middle) {

@@ -1,4 +1,4 @@
-#include <rubato/analysis/static.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 
 #include "support/assembled.hpp"
 #include "support/frame.hpp"
@@ -12,6 +12,9 @@
 namespace rubato::analysis {
 namespace {
 
+using integrate::find_equilibrium;
+using integrate::StaticEquilibrium;
+using integrate::StaticOutcome;
 using testing::assembled;
 using testing::place_of;
 using testing::portal;

@@ -1,7 +1,7 @@
 #include <rubato/analysis/run_study.hpp>
-#include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/system/eliminate_supports.hpp>
 
 #include "support/memory_sink.hpp"
@@ -17,6 +17,10 @@
 
 namespace rubato::analysis {
 namespace {
+
+using integrate::find_equilibrium;
+using integrate::StaticEquilibrium;
+using integrate::StaticOutcome;
 
 /// The tables of the first analysis, a transient.
 testing::MemorySink run(const std::string& text) {

@@ -1,5 +1,5 @@
-#include <rubato/analysis/mechanism_equilibrium.hpp>
-#include <rubato/analysis/mechanism_start_state.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
+#include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/build_mechanism.hpp>
 
@@ -216,11 +216,11 @@ lock = { at = 0.5, kind = ")" + std::string(kind) +
                                            "study.toml");
     const system::Mechanism mechanism(model::build_mechanism(study.model, {}));
     std::vector<std::string> warnings;
-    system::State state = analysis::assembled_start({}, mechanism, warnings, false);
+    system::State state = integrate::assembled_start({}, mechanism, warnings, false);
     state.q[5] = 0.5;  // the angle of the body after the ground
     state.phase[0] = model::lock_engaged;
-    const auto settled = analysis::equilibrium_near(state, mechanism);
-    ASSERT_TRUE(settled.is_found);
+    const auto settled = integrate::MechanismKind(mechanism).find_equilibrium(state, {});
+    ASSERT_EQ(settled.outcome, integrate::EquilibriumOutcome::found);
     const bool is_stop = std::string(kind) == "stop";
     EXPECT_NEAR(settled.state.q[5], is_stop ? -0.4 : 0.5, found);
     EXPECT_EQ(settled.state.phase[0], is_stop ? model::lock_open : model::lock_engaged);

@@ -1,5 +1,5 @@
 #include <rubato/analysis/run_study.hpp>
-#include <rubato/analysis/static.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 
 #include "support/assembled.hpp"
 #include "support/frame.hpp"
@@ -18,6 +18,9 @@
 namespace rubato::analysis {
 namespace {
 
+using integrate::find_equilibrium;
+using integrate::StaticEquilibrium;
+using integrate::StaticOutcome;
 using testing::assembled;
 using testing::place_of;
 using testing::portal;

@@ -1,4 +1,4 @@
-#include <rubato/analysis/static_equilibrium.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/model/laws/law_kind.hpp>
 
 #include "support/assembled.hpp"
@@ -11,6 +11,10 @@
 // Static states of structures with other laws than sliders and stops.
 namespace rubato::analysis {
 namespace {
+
+using integrate::find_equilibrium;
+using integrate::StaticEquilibrium;
+using integrate::StaticOutcome;
 
 model::LawDescription bouc_wen(const char* first, const char* second, double stiffness) {
   model::LawDescription law;

@@ -1,6 +1,6 @@
-#include <rubato/analysis/static_equilibrium.hpp>
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
@@ -15,6 +15,9 @@
 
 namespace rubato::analysis {
 namespace {
+
+using integrate::find_equilibrium;
+using integrate::StaticOutcome;
 
 struct Structure {
   const char* name;

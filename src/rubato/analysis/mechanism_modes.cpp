@@ -1,10 +1,11 @@
+#include <rubato/analysis/equilibrium_text.hpp>
 #include <rubato/analysis/failure_text.hpp>
-#include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
-#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
+#include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
@@ -137,8 +138,8 @@ system::State reach(const std::string& name, const MechanismModesPlan::Reached& 
     return at_rest(held, mechanism, report.warnings);
   }
   const StopScope scope(context.stop);
-  const MechanismStatic found = equilibrium_near(march->state(), mechanism);
-  report.message = with_friction_told(found.complaint(mechanism), mechanism);
+  const integrate::Equilibrium found = integrate::MechanismKind(mechanism).find_equilibrium(march->state(), {});
+  report.message = complaint(found);
   if (!report.message.empty()) report.status = RunStatus::failed;
   return found.state;
 }
@@ -169,14 +170,14 @@ MechanismModesPlan plan_mechanism_modes(const std::string& name, const Location&
     plan.warnings = plan.reached->motion.warnings;
     return plan;
   }
-  plan.state = assembled_start(where, mechanism, plan.warnings, false);
+  plan.state = integrate::assembled_start(where, mechanism, plan.warnings, false);
   if (!description.about_equilibrium) {
     plan.state = at_rest(plan.state, mechanism, plan.warnings);
     return plan;
   }
   plan.about_equilibrium = true;
-  MechanismStatic found = equilibrium_near(plan.state, mechanism);
-  plan.failure = with_friction_told(found.complaint(mechanism), mechanism);
+  integrate::Equilibrium found = integrate::MechanismKind(mechanism).find_equilibrium(plan.state, {});
+  plan.failure = complaint(found);
   plan.state = std::move(found.state);
   return plan;
 }

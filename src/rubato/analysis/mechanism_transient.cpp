@@ -1,8 +1,9 @@
+#include <rubato/analysis/equilibrium_text.hpp>
 #include <rubato/analysis/load_checks.hpp>
-#include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_events.hpp>
-#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
+#include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
@@ -191,22 +192,24 @@ void MechanismTransient::check(const TransientRequest& request, const TransientP
 
 void MechanismTransient::find_start(const TransientRequest& request, TransientPlan& plan) const {
   const auto& initial = request.description.initial;
-  plan.start = assembled_start(request.where, mechanism_, plan.warnings, !initial);
+  plan.start = integrate::assembled_start(request.where, mechanism_, plan.warnings, !initial);
   if (initial) {
-    refuse_displacements(request.title(), *initial);
-    const MechanismStatic found = equilibrium_near(plan.start, mechanism_);
-    plan.failure = with_friction_told(found.complaint(mechanism_), mechanism_);
+    const std::string title = request.title();
+    const integrate::MechanismKind kind(mechanism_);
+    const auto held = kind.held_displacements({title, request.where, *initial});
+    const integrate::Equilibrium found = kind.find_equilibrium(plan.start, held);
+    plan.failure = complaint(found);
     if (plan.failure.empty()) {
       if (!found.is_stable)
         plan.warnings.push_back(
             "the equilibrium at the start is not stable: what moves from there begins with round-off");
-      plan.start = set_in_motion(request.where, mechanism_, found.state, plan.warnings);
+      plan.start = integrate::set_in_motion(request.where, mechanism_, found.state, plan.warnings);
     } else {
       plan.failure = "it has no static start: " + plan.failure;
     }
   }
-  if (plan.failure.empty()) settle_start(request.where, mechanism_, plan.duration, plan.start);
-  warn_of_locks_behind(mechanism_, plan.start, plan.warnings);
+  if (plan.failure.empty()) integrate::settle_start(request.where, mechanism_, plan.duration, plan.start);
+  integrate::warn_of_locks_behind(mechanism_, plan.start, plan.warnings);
 }
 
 void MechanismTransient::take_equal_steps(const TransientRequest& /*request*/, TransientPlan& plan) const {

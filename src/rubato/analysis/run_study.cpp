@@ -1,6 +1,4 @@
-#include <rubato/analysis/mechanism_equilibrium.hpp>
 #include <rubato/analysis/mechanism_modes.hpp>
-#include <rubato/analysis/mechanism_start_state.hpp>
 #include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
@@ -14,6 +12,8 @@
 #include <rubato/analysis/structure_tables.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include <fmt/format.h>
 
@@ -93,9 +93,9 @@ std::unique_ptr<TransientKind> transient_kind(const StudyInput& input) {
   return std::make_unique<StructureTransient>(input.system);
 }
 
-RunReport told_of_friction(RunReport report, const system::Mechanism& mechanism) {
-  report.message = with_friction_told(report.message, mechanism);
-  return report;
+std::unique_ptr<integrate::SystemKind> kind_of(const StudyInput& input) {
+  if (input.mechanism) return std::make_unique<integrate::MechanismKind>(*input.mechanism);
+  return std::make_unique<integrate::StructureKind>(input.system);
 }
 
 /// Plans an analysis of its own kind.
@@ -112,20 +112,15 @@ struct Plan {
   }
 
   PlannedAnalysis operator()(const model::StaticDescription& equilibrium) const {
-    AnalysisOutline result;
-    if (input.mechanism) {
-      result = {"static equilibrium of a mechanism", 100.0 * static_cast<double>(input.mechanism->size())};
-      result.warnings = check_mechanism_static(analysis.name, analysis.where, equilibrium, *input.mechanism);
-    } else {
-      (void)equilibrium_of(analysis.name, analysis.where, equilibrium, input.system);
-      (void)observed_or_all(equilibrium.observe, {input.system, input.system.supports()});
-      result = {"static equilibrium", 100.0 * static_cast<double>(input.system.size())};
-    }
-    return {result, [task = analysis, equilibrium](const StudyInput& at, RunContext& context) {
+    const auto kind = kind_of(input);
+    const auto plan =
+        std::make_shared<const StaticPlan>(plan_static(analysis.name, analysis.where, equilibrium, *kind));
+    AnalysisOutline result{kind->is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
+                           100.0 * static_cast<double>(kind->system().size())};
+    result.warnings = plan->warnings;
+    return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              if (!at.mechanism) return run_static(task.name, task.where, equilibrium, at.system, context);
-              return told_of_friction(run_mechanism_static(task.name, task.where, equilibrium, *at.mechanism, context),
-                                      *at.mechanism);
+              return run_static(name, *plan, *kind_of(at), context);
             }};
   }
 

@@ -1,20 +1,39 @@
 #pragma once
 
+#include <rubato/analysis/observed.hpp>
 #include <rubato/analysis/run_context.hpp>
-#include <rubato/analysis/static_equilibrium.hpp>
-#include <rubato/analysis/transient_plan.hpp>
-#include <rubato/model/description.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace rubato::analysis {
 
-/// The equilibrium that a description asks for. Throws InvalidInput at `where`: for a displacement that the model does
-/// not hold, and where there is no equilibrium, naming the coordinates that move.
-StaticEquilibrium equilibrium_of(const std::string& name, const Location& where,
-                                 const model::StaticDescription& description, const system::LocallyNonlinear& system);
+/// A static analysis with all its values.
+struct StaticPlan {
+  std::string title;  ///< heads the messages
+  std::vector<Observed> observed;
+  model::SectionForcesDescription section_forces;
+  std::vector<model::Held> held;
+  system::State start;                          ///< of the search
+  std::optional<integrate::Equilibrium> found;  ///< empty: the search belongs to the run
+  std::vector<std::string> warnings = {};       ///< of what the start took
+};
 
-/// Writes the equilibrium as a table of one row: displacements, angles, slider forces and the reactions on held
-/// displacements. Throws what equilibrium_of throws.
-RunReport run_static(const std::string& name, const Location& where, const model::StaticDescription& description,
-                     const system::LocallyNonlinear& system, RunContext& context);
+/// The equilibrium that a description asks for, of a system whose equilibrium is found at once. Throws InvalidInput at
+/// its place for a displacement that the model does not hold, and where there is no equilibrium, naming the coordinates
+/// that move.
+integrate::Equilibrium equilibrium_of(const integrate::StaticRequest& request, const integrate::SystemKind& kind);
+
+/// Evaluates a description. Throws InvalidInput.
+StaticPlan plan_static(const std::string& name, const Location& where, const model::StaticDescription& description,
+                       const integrate::SystemKind& kind);
+
+/// Writes the equilibrium as a table of one row: positions, what the parts carry, and the reactions on held
+/// displacements. One that is not found is a failure, and nothing is written. One that is not stable is told, and locks
+/// that hold are.
+RunReport run_static(const std::string& name, const StaticPlan& plan, const integrate::SystemKind& kind,
+                     RunContext& context);
 
 }  // namespace rubato::analysis

@@ -3,6 +3,7 @@
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/integrate/load_jumps.hpp>
 #include <rubato/integrate/stability.hpp>
 #include <rubato/integrate/structure_balance.hpp>
@@ -33,7 +34,8 @@ system::State static_start(const std::string& name, const Location& where, const
       throw InvalidInput(where, fmt::format("analysis \"{}\": initial = \"static\" finds the positions, and coordinate "
                                             "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
                                             name, system.coordinates()[static_cast<std::size_t>(i)]));
-  return equilibrium_of(name, where, description, system).state;
+  const std::string title = "analysis \"" + name + "\": ";
+  return equilibrium_of({title, where, description}, integrate::StructureKind(system)).state;
 }
 
 std::string missed_jumps(const integrate::LoadJumps& jumps) {

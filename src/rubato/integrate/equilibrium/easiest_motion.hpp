@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 /// Factorises a stiffness and tells whether it resists every motion. A matrix of a structure that floats is singular,
 /// but its last pivot is round-off of either sign and may look like a stiffness.
@@ -15,4 +15,4 @@ namespace rubato::analysis {
 bool factorise_resisting(const SparseMatrix& matrix, numerics::Pivots pivots, numerics::OrderedFactor& factor,
                          int& factorisations, std::vector<Index>& moving);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

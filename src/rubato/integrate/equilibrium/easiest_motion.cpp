@@ -1,10 +1,10 @@
-#include <rubato/analysis/easiest_motion.hpp>
+#include <rubato/integrate/equilibrium/easiest_motion.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 namespace {
 
 // A pivot that is small against the diagonal entry it came from raises the suspicion of a mechanism. A frame that turns
@@ -53,4 +53,4 @@ bool factorise_resisting(const SparseMatrix& matrix, numerics::Pivots pivots, nu
   return false;
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

@@ -1,12 +1,12 @@
-#include <rubato/analysis/easiest_motion.hpp>
-#include <rubato/analysis/static_by_growth.hpp>
+#include <rubato/integrate/equilibrium/easiest_motion.hpp>
+#include <rubato/integrate/equilibrium/static_by_growth.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 namespace {
 
 class Growth final : public numerics::NewtonProblem {
@@ -230,4 +230,4 @@ StaticEquilibrium grow_equilibrium(const system::LocallyNonlinear& system, std::
   return Growth(system, held).solve();
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

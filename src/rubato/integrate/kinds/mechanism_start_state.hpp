@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 /// The start of a mechanism on its constraints. What had to move, and constraints that repeat others, are told in
 /// `warnings`. Throws InvalidInput, naming the joints and by how much they are apart, where they cannot be assembled.
@@ -23,11 +23,8 @@ system::State set_in_motion(const Location& where, const system::Mechanism& mech
 /// friction, and for friction that follows a reaction which joints share in a way that nothing determines.
 void settle_start(const Location& where, const system::Mechanism& mechanism, double duration, system::State& state);
 
-/// Why an equilibrium was not found, and that friction, which equilibria leave out, might hold the mechanism.
-std::string with_friction_told(const std::string& complaint, const system::Mechanism& mechanism);
-
 /// A drive, or joints that had to move, may put a coordinate beyond its lock, which was meant to be reached.
 void warn_of_locks_behind(const system::Mechanism& mechanism, const system::State& start,
                           std::vector<std::string>& warnings);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

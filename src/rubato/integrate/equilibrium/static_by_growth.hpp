@@ -1,8 +1,8 @@
 #pragma once
 
-#include <rubato/analysis/static_equilibrium.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 /// find_equilibrium() of a structure with other laws than sliders and stops: where loads and held displacements lead
 /// that grow together from zero. Every contact is a function of its displacement, reached from zero without a turn;
@@ -10,4 +10,4 @@ namespace rubato::analysis {
 /// way, and in shares that are as small as it takes where it does not.
 StaticEquilibrium grow_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

@@ -1,6 +1,6 @@
-#include <rubato/analysis/easiest_motion.hpp>
-#include <rubato/analysis/static_by_growth.hpp>
-#include <rubato/analysis/static_equilibrium.hpp>
+#include <rubato/integrate/equilibrium/easiest_motion.hpp>
+#include <rubato/integrate/equilibrium/static_by_growth.hpp>
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 namespace {
 
 constexpr double drift = 1e-9;       // of its stiffness that an open stop lends where nothing else resists
@@ -292,4 +292,4 @@ StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::
   return StaticSolver(system, held).solve();
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

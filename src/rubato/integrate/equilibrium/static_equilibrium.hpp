@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 enum class StaticOutcome {
   found,
@@ -37,4 +37,4 @@ struct StaticEquilibrium {
 /// @param held  coordinates with their values, each once
 StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

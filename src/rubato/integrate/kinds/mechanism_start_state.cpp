@@ -1,4 +1,4 @@
-#include <rubato/analysis/mechanism_start_state.hpp>
+#include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/mechanism_start.hpp>
 
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 namespace {
 
 std::string row_names(const std::vector<Index>& rows, const system::Mechanism& mechanism) {
@@ -27,7 +27,7 @@ const char* unit_of_coordinate(Index coordinate, const system::Mechanism& mechan
   return mechanism.model().is_rotation[static_cast<std::size_t>(coordinate)] != 0 ? "rad" : "m";
 }
 
-void warn_of_velocities(const integrate::ConsistentStart& start, const system::Mechanism& mechanism,
+void warn_of_velocities(const ConsistentStart& start, const system::Mechanism& mechanism,
                         std::vector<std::string>& warnings) {
   if (start.most_changed < 0) return;
   warnings.push_back(fmt::format(
@@ -116,7 +116,7 @@ std::string immense_numbers(const system::Mechanism& mechanism) {
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
                               std::vector<std::string>& warnings, bool moves) {
   system::MechanismEquations equations(mechanism);
-  const auto start = integrate::make_consistent(equations, mechanism.start());
+  const auto start = make_consistent(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
   if (start.is_assembled && start.worst_rate >= 0) {
     std::vector<std::string> drives;
@@ -169,7 +169,7 @@ system::State set_in_motion(const Location& where, const system::Mechanism& mech
   leave_stops(mechanism, at_rest);
   if (mechanism.model().drives.empty() && at_rest.v.isZero(0.0)) return at_rest;
   system::MechanismEquations equations(mechanism);
-  const auto start = integrate::make_consistent(equations, std::move(at_rest));
+  const auto start = make_consistent(equations, std::move(at_rest));
   if (!start.is_consistent)
     throw InvalidInput(
         where,
@@ -184,7 +184,7 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, dou
   system::MechanismEquations equations(mechanism);
   equations.set_duration(duration);
   refuse_unknown_reactions(where, equations, state);
-  if (!integrate::settle_new_velocities(equations, state, 1e-6 * duration))
+  if (!settle_new_velocities(equations, state, 1e-6 * duration))
     throw InvalidInput(
         where,
         "no accelerations were found at the start that go with the friction of the joints: with "
@@ -206,10 +206,4 @@ void warn_of_locks_behind(const system::Mechanism& mechanism, const system::Stat
   }
 }
 
-std::string with_friction_told(const std::string& complaint, const system::Mechanism& mechanism) {
-  if (complaint.empty() || mechanism.model().frictions.empty()) return complaint;
-  return complaint +
-         "; equilibria leave out the friction of joints, which this model has: let a transient come to rest";
-}
-
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

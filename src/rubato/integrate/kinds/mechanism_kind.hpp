@@ -1,0 +1,29 @@
+#pragma once
+
+#include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/system/mechanism.hpp>
+
+namespace rubato::integrate {
+
+/// A mechanism: bodies and beams that joints hold.
+class MechanismKind final : public SystemKind {
+ public:
+  /// @param mechanism  must outlive this
+  explicit MechanismKind(const system::Mechanism& mechanism) : mechanism_(mechanism) {}
+
+  const system::System& system() const override { return mechanism_; }
+  bool is_constrained() const override { return true; }
+  void show(KindVisitor& visitor) const override { visitor.mechanism(mechanism_); }
+
+  std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
+  /// Assembles the mechanism; throws where it cannot be.
+  system::State static_start(const Location& where, std::vector<std::string>& warnings) const override;
+  bool finds_equilibrium_at_once() const override { return false; }
+  /// Downhill from a configuration that is assembled; friction of joints is left out.
+  Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const override;
+
+ private:
+  const system::Mechanism& mechanism_;
+};
+
+}  // namespace rubato::integrate

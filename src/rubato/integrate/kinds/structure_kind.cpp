@@ -1,0 +1,79 @@
+#include <rubato/integrate/equilibrium/static_equilibrium.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rubato::integrate {
+namespace {
+
+EquilibriumOutcome outcome_of(const StaticEquilibrium& found) {
+  switch (found.outcome) {
+    case StaticOutcome::found:
+      return found.state.q.allFinite() ? EquilibriumOutcome::found : EquilibriumOutcome::not_finite;
+    case StaticOutcome::mechanism:
+      return EquilibriumOutcome::floats;
+    case StaticOutcome::gives_way:
+      return EquilibriumOutcome::gives_way;
+    case StaticOutcome::gives_way_on_the_way:
+      return EquilibriumOutcome::gives_way_on_the_way;
+    case StaticOutcome::not_settled:
+      break;
+  }
+  return EquilibriumOutcome::contacts_unsettled;
+}
+
+std::vector<std::string> slipping(const system::State& state, const system::LocallyNonlinear& system) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < system.sliders().size(); ++i) {
+    const double u = system.relative_displacement(static_cast<Index>(i), state.q);
+    if (std::abs(system.sliders()[i].stiffness * u) > system.sliders()[i].limit)
+      names.push_back(system.sliders()[i].name);
+  }
+  return names;
+}
+
+}  // namespace
+
+std::vector<model::Held> StructureKind::held_displacements(const StaticRequest& request) const {
+  const model::StaticDescription& description = request.description;
+  if (description.section_forces.is_wanted())
+    throw InvalidInput(description.section_forces.where, request.title +
+                                                             "section_forces are kept of geometrically exact beams, in "
+                                                             "mechanisms; leave it out");
+  if (!description.displacements) return system_.held_displacements();
+  std::vector<std::string> known;
+  for (const auto& held : system_.held_displacements())
+    known.push_back(system_.coordinates()[static_cast<std::size_t>(held.coordinate)]);
+  std::vector<model::Held> chosen;
+  for (const auto& wanted : *description.displacements) {
+    const auto found = std::find(known.begin(), known.end(), wanted.first);
+    if (found == known.end())
+      throw InvalidInput(wanted.where,
+                         fmt::format("{}displacements names \"{}\", of which there is no [[displacement]]{}",
+                                     request.title, wanted.first, suggestion(wanted.first, known)));
+    chosen.push_back(system_.held_displacements()[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return chosen;
+}
+
+Equilibrium StructureKind::find_equilibrium(const system::State& /*start*/, std::span<const model::Held> held) const {
+  StaticEquilibrium found = integrate::find_equilibrium(system_, held);
+  const auto name = [&](Index i) { return system_.coordinates()[static_cast<std::size_t>(i)]; };
+  Equilibrium result;
+  result.outcome = outcome_of(found);
+  result.reached = found.reached;
+  for (const Index i : found.moving) result.moving.push_back(name(i));
+  if (found.outcome == StaticOutcome::gives_way) result.changing = slipping(found.state, system_);
+  if (result.outcome == EquilibriumOutcome::found)
+    for (std::size_t i = 0; i < held.size(); ++i)
+      result.reactions.push_back(
+          {name(held[i].coordinate), system_.is_rotation(held[i].coordinate), found.reaction[static_cast<Index>(i)]});
+  result.statistics = {{"factorisations", std::to_string(found.factorisations)}};
+  result.state = std::move(found.state);
+  return result;
+}
+
+}  // namespace rubato::integrate

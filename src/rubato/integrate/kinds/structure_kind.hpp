@@ -1,0 +1,28 @@
+#pragma once
+
+#include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+namespace rubato::integrate {
+
+/// A linear structure with laws between its coordinates.
+class StructureKind final : public SystemKind {
+ public:
+  /// @param system  must outlive this
+  explicit StructureKind(const system::LocallyNonlinear& system) : system_(system) {}
+
+  const system::System& system() const override { return system_; }
+  const system::MovingSupports* supports() const override { return system_.supports(); }
+  bool is_constrained() const override { return false; }
+  void show(KindVisitor& visitor) const override { visitor.structure(system_); }
+
+  std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
+  system::State static_start(const Location&, std::vector<std::string>&) const override { return system_.start(); }
+  bool finds_equilibrium_at_once() const override { return true; }
+  Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const override;
+
+ private:
+  const system::LocallyNonlinear& system_;
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/equilibrium/equilibrium.hpp>
+#include <rubato/model/description.hpp>
+#include <rubato/system/moving_supports.hpp>
+#include <rubato/system/system.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rubato::system {
+class LocallyNonlinear;
+class Mechanism;
+}  // namespace rubato::system
+
+namespace rubato::integrate {
+
+/// Tells the kinds of system apart where each needs something of its own.
+class KindVisitor {
+ public:
+  virtual ~KindVisitor() = default;
+  virtual void structure(const system::LocallyNonlinear& system) = 0;
+  virtual void mechanism(const system::Mechanism& mechanism) = 0;
+};
+
+/// What a study asks of an equilibrium, and where it says so.
+struct StaticRequest {
+  const std::string& title;  ///< heads the messages
+  const Location& where;
+  const model::StaticDescription& description;
+};
+
+/// A system as analyses see it: what they ask of its equations, which each kind of system finds in its own way. Const;
+/// a workspace is made in each call.
+///
+/// Functions throw InvalidInput at the place of what is wrong.
+class SystemKind {
+ public:
+  virtual ~SystemKind() = default;
+
+  virtual const system::System& system() const = 0;
+  /// Null where no support moves.
+  virtual const system::MovingSupports* supports() const { return nullptr; }
+  /// Whether joints hold it: it is a mechanism.
+  virtual bool is_constrained() const = 0;
+  virtual void show(KindVisitor& visitor) const = 0;
+
+  // Statics
+  /// The displacements that a study holds; refuses keys that do not go with the kind.
+  virtual std::vector<model::Held> held_displacements(const StaticRequest& request) const = 0;
+  /// Where the search for an equilibrium begins. What that took is told in `warnings`.
+  virtual system::State static_start(const Location& where, std::vector<std::string>& warnings) const = 0;
+  /// Whether the search is short, and the equilibrium one that the study decides: where there is none, planning refuses
+  /// the study. Else the search belongs to the run, and may fail there.
+  virtual bool finds_equilibrium_at_once() const = 0;
+  /// The equilibrium under the loads at t = 0, near a given state where there are several.
+  virtual Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const = 0;
+};
+
+}  // namespace rubato::integrate

@@ -1,0 +1,36 @@
+#include <rubato/results/columns/contact_columns.hpp>
+#include <rubato/results/columns/kind_columns.hpp>
+#include <rubato/results/columns/law_columns.hpp>
+#include <rubato/results/columns/mechanism_columns.hpp>
+
+namespace rubato::results {
+
+OwnedColumns columns_of_equilibrium(const integrate::SystemKind& kind, const std::vector<Observed>& observed,
+                                    const model::SectionForcesDescription& section_forces, const std::string& title) {
+  struct Maker final : integrate::KindVisitor {
+    const std::vector<Observed>& observed;
+    const model::SectionForcesDescription& section_forces;
+    const std::string& title;
+    OwnedColumns made;
+
+    Maker(const std::vector<Observed>& shown, const model::SectionForcesDescription& forces, const std::string& of)
+        : observed(shown), section_forces(forces), title(of) {}
+
+    void structure(const system::LocallyNonlinear& system) override {
+      made.groups.push_back(
+          std::make_unique<ObservedColumns>(observed, std::vector{ObservedColumns::Quantity::position}));
+      made.groups.push_back(std::make_unique<SliderColumns>(system));
+      made.groups.push_back(std::make_unique<StopColumns>(system));
+      made.groups.push_back(std::make_unique<LawColumns>(system, false));
+    }
+    void mechanism(const system::Mechanism& mechanism) override {
+      const auto equations = std::make_shared<system::MechanismEquations>(mechanism);
+      made = {equations, columns_of_equilibrium(*equations, observed, section_forces, title)};
+    }
+  };
+  Maker maker(observed, section_forces, title);
+  kind.show(maker);
+  return std::move(maker.made);
+}
+
+}  // namespace rubato::results

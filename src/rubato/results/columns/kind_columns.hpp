@@ -1,0 +1,26 @@
+#pragma once
+
+#include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/results/columns/observed_columns.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rubato::results {
+
+/// Columns with what they look at.
+struct OwnedColumns {
+  std::shared_ptr<void> workspace;
+  ColumnGroups groups;
+};
+
+/// What an equilibrium shows: positions of what is observed; of a structure force and slip of its contacts; of a
+/// mechanism the coordinates that its joints leave free, reactions, laws and section forces. Throws InvalidInput for a
+/// beam that is not there.
+/// @param kind   must outlive the columns
+/// @param title  of the analysis, for the error
+OwnedColumns columns_of_equilibrium(const integrate::SystemKind& kind, const std::vector<Observed>& observed,
+                                    const model::SectionForcesDescription& section_forces, const std::string& title);
+
+}  // namespace rubato::results
