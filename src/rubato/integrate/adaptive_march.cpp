@@ -34,9 +34,8 @@ class Marcher {
         estimator_(estimator),
         plan_(plan),
         timeline_(timeline),
-        base_(state),
+        states_{state, state},
         prepared_(state),
-        to_(state),
         end_(end),
         observer_(observer),
         log_(log),
@@ -45,30 +44,30 @@ class Marcher {
   }
 
   AdaptiveReport run() {
-    estimator_.start(base_);
+    estimator_.start(*base_);
     wanted_ = first_step();
     if (plan_.first > 0.0) wanted_ = plan_.first;
     base_step_ = wanted_;
-    while (base_.t < end_ && goes_on_) take_step();
+    while (base_->t < end_ && goes_on_) take_step();
     report_.factorisations = stepper_.factorisations() + estimator_.factorisations();
     return report_;
   }
-  const system::State& state() const { return base_; }
+  const system::State& state() const { return *base_; }
 
  private:
   /// Where nothing moves and nothing says how long a step may be, a thousandth of the march is a start.
   double first_step() const {
     const double step = estimator_.first_step();
-    return std::min(largest_step(), std::isfinite(step) ? step : 1e-3 * (end_ - base_.t));
+    return std::min(largest_step(), std::isfinite(step) ? step : 1e-3 * (end_ - base_->t));
   }
 
   /// The longest step that may start now.
   double largest_step() const {
     const auto& bounds = plan_.bounds;
-    while (next_bound_ < bounds.size() && bounds[next_bound_].to <= base_.t) ++next_bound_;
+    while (next_bound_ < bounds.size() && bounds[next_bound_].to <= base_->t) ++next_bound_;
     double largest = plan_.largest;
-    for (std::size_t i = next_bound_; i < bounds.size() && bounds[i].from < base_.t + largest; ++i)
-      largest = std::min(largest, std::max(0.0, bounds[i].from - base_.t) + bounds[i].step);
+    for (std::size_t i = next_bound_; i < bounds.size() && bounds[i].from < base_->t + largest; ++i)
+      largest = std::min(largest, std::max(0.0, bounds[i].from - base_->t) + bounds[i].step);
     return largest;
   }
 
@@ -80,7 +79,7 @@ class Marcher {
 
   /// The step to try: not beyond the next breakpoint, and equal parts of the way to one that is not the end.
   Length next_length() const {
-    const double next = breakpoints_[next_breakpoint_], rest = next - base_.t;
+    const double next = breakpoints_[next_breakpoint_], rest = next - base_->t;
     double step = std::min(wanted_, largest_step());
     const auto reaches_it = [&] { return step >= rest * (1.0 - same_step); };
     if (!reaches_it() && next_breakpoint_ + 1 < breakpoints_.size()) step = part_of(rest, step);
@@ -124,25 +123,25 @@ class Marcher {
 
   /// Millions of equal steps round the same way: the sum of times is compensated (Kahan 1965).
   Length length_of(double step) const {
-    const double exact = step + lost_, t1 = base_.t + exact;
-    return {step, t1, exact - (t1 - base_.t), false};
+    const double exact = step + lost_, t1 = base_->t + exact;
+    return {step, t1, exact - (t1 - base_->t), false};
   }
 
   /// The state with its auxiliary acceleration made for another step; the state itself stays as it is.
   const system::State& prepared(double step) {
-    if (step == base_step_ || !plan_.rebuild) return base_;
-    prepared_ = base_;
+    if (step == base_step_ || !plan_.rebuild) return *base_;
+    prepared_ = *base_;
     stepper_.step_changes(prepared_, step / base_step_);
     return prepared_;
   }
 
   void take_step() {
     Length length = next_length();
-    if (!(length.t1 > base_.t)) return fail({StepOutcome::too_small, -1}, length.step);
+    if (!(length.t1 > base_->t)) return fail({StepOutcome::too_small, -1}, length.step);
     if (!has_tried(length)) return;
     bool is_event = false;
     if (plan_.locate_events && !has_looked_for_events(length, is_event)) return;
-    const double error = estimator_.error(*from_, to_, length.step);
+    const double error = estimator_.error(*from_, *to_, length.step);
     report_.solves += estimator_.solves_a_try();
     const Decision decision = decide(plan_.controller, {length.step, error, estimator_.exponent()}, history_);
     history_.forgone = decision.forgone;
@@ -162,8 +161,8 @@ class Marcher {
       wanted_ = std::max(wanted_, decision.next);
     accept(length, error);
     if (crawls(length.step)) return fail({StepOutcome::crawls, -1}, length.step);
-    if (is_event && base_.t < end_ && goes_on_) pass_event();
-    if (length.arrives && base_.t < end_ && goes_on_) pass_breakpoint();
+    if (is_event && base_->t < end_ && goes_on_) pass_event();
+    if (length.arrives && base_->t < end_ && goes_on_) pass_breakpoint();
   }
 
   /// Whether the error stays while steps are tried that are ever shorter: what it shows is then no error of theirs, but
@@ -181,7 +180,7 @@ class Marcher {
   /// error stayed: those after it were too short for no reason, down to where they are made of round-off.
   void begin_anew_here() {
     has_begun_anew_ = true;
-    if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
+    if (!timeline_.restart(*base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
     wanted_ = stagnant_step_;
     stagnant_error_ = 0.0;
     start_anew();
@@ -199,7 +198,7 @@ class Marcher {
   /// One try from base_; a failure shortens the next.
   bool has_tried(const Length& length) {
     from_ = &prepared(length.step);
-    const StepReport tried = stepper_.attempt(*from_, length.step, length.t1, to_);
+    const StepReport tried = stepper_.attempt(*from_, length.step, length.t1, *to_);
     report_.solves += 1;
     if (tried.outcome == StepOutcome::accepted) return true;
     note(length.step, std::numeric_limits<double>::quiet_NaN(), outcome_of(tried.outcome));
@@ -214,7 +213,7 @@ class Marcher {
   bool has_looked_for_events(Length& length, bool& is_event) {
     // A step of the resolution would be made of round-off.
     const double least = std::max(least_progress * std::min(wanted_, largest_step()), 10.0 * timeline_.resolution());
-    Crossing crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::between);
+    Crossing crossing = timeline_.first_crossing(*from_, *to_, least / length.step, Look::between);
     if (crossing.guard >= 0 && crossing.seen < 1.0) {
       // Between the ends, where stiff parts make forces of what interpolation errs by: a step there tells.
       const Length whole = length;
@@ -222,12 +221,12 @@ class Marcher {
       length = length_of(std::max(crossing.seen * whole.step, std::min(least, 0.5 * whole.step)));
       ++report_.event_tries;
       if (!has_tried(length)) return false;
-      crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::at_ends);
+      crossing = timeline_.first_crossing(*from_, *to_, least / length.step, Look::at_ends);
       if (crossing.guard < 0) {
         note(length.step, std::numeric_limits<double>::quiet_NaN(), TryOutcome::event);
         length = whole;
         if (!has_tried(length)) return false;
-        crossing = timeline_.first_crossing(*from_, to_, least / length.step, Look::at_ends);
+        crossing = timeline_.first_crossing(*from_, *to_, least / length.step, Look::at_ends);
       }
     }
     is_event = crossing.guard >= 0;
@@ -245,7 +244,7 @@ class Marcher {
       // On the interpolated step first; then Newton's iteration, unless the bracket hardly shrinks.
       double at = crossing.share * length.step;
       if (i > 0) {
-        const GuardValue guard = timeline_.guard(crossing.guard, *from_, to_);
+        const GuardValue guard = timeline_.guard(crossing.guard, *from_, *to_);
         at = length.step - guard.value / guard.rate;
       }
       const bool is_slow = i > 1 && high - low > 0.5 * before_last;
@@ -254,12 +253,12 @@ class Marcher {
       before_last = last;
       last = high - low;
       length = length_of(at);
-      if (!(length.t1 > base_.t)) return fail({StepOutcome::too_small, -1}, length.step), false;
+      if (!(length.t1 > base_->t)) return fail({StepOutcome::too_small, -1}, length.step), false;
       if (!has_tried(length)) return false;
       ++report_.event_tries;
-      const Crossing now = timeline_.first_crossing(*from_, to_, least / at, Look::at_ends);
+      const Crossing now = timeline_.first_crossing(*from_, *to_, least / at, Look::at_ends);
       if (now.guard >= 0) crossing = now;  // perhaps another, which comes first
-      const GuardValue guard = timeline_.guard(crossing.guard, *from_, to_);
+      const GuardValue guard = timeline_.guard(crossing.guard, *from_, *to_);
       (now.guard >= 0 ? high : low) = at;
       const bool is_there = std::abs(guard.value) <= resolution * std::abs(guard.rate);
       if (is_there || (now.guard >= 0 && high - low <= resolution)) break;
@@ -267,13 +266,13 @@ class Marcher {
     // What would be left of the way to a breakpoint is nothing: no step can be made of it.
     const double next = breakpoints_[next_breakpoint_];
     if (length.t1 == next || next - length.t1 > resolution) return true;
-    length = {next - base_.t, next, 0.0, true};
+    length = {next - base_->t, next, 0.0, true};
     return has_tried(length);
   }
 
   void accept(const Length& length, double error) {
     history_ = {error, length.step, false, history_.forgone};
-    estimator_.accept(to_);
+    estimator_.accept(*to_);
     stagnant_error_ = 0.0;
     has_begun_anew_ = false;
     base_step_ = length.step;
@@ -285,7 +284,7 @@ class Marcher {
     report_.largest_error = std::fmax(report_.largest_error, error);
     report_.smallest_step = std::min(report_.smallest_step, length.step);
     report_.largest_step = std::max(report_.largest_step, length.step);
-    if (observer_ && !observer_->accepted(base_, to_)) {
+    if (observer_ && !observer_->accepted(*base_, *to_)) {
       goes_on_ = false;
       report_.march.end = MarchEnd::stopped;
     }
@@ -299,14 +298,14 @@ class Marcher {
     ++next_breakpoint_;
     part_ = 0.0;
     const bool is_short = base_step_ < nothing * std::min(wanted_, largest_step());
-    if (!timeline_.jumps_at(base_.t) && !is_short) return estimator_.forget();
-    if (!timeline_.restart(base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
+    if (!timeline_.jumps_at(base_->t) && !is_short) return estimator_.forget();
+    if (!timeline_.restart(*base_)) return fail({StepOutcome::no_way_on, -1}, base_step_);
     start_anew();
   }
 
   void pass_event() {
     ++report_.events;
-    const Passage passage = timeline_.pass(to_, base_, stepper_.shift() * base_step_);
+    const Passage passage = timeline_.pass(*to_, *base_, stepper_.shift() * base_step_);
     if (passage == Passage::fails) return fail({StepOutcome::no_way_on, -1}, base_step_);
     if (passage == Passage::restarts) return start_anew();
     estimator_.forget();
@@ -316,7 +315,7 @@ class Marcher {
 
   void start_anew() {
     history_ = {};
-    estimator_.start(base_);
+    estimator_.start(*base_);
     if (std::holds_alternative<FixedStep>(plan_.controller))
       wanted_ = plan_.first > 0.0 ? plan_.first : wanted_;  // a transition that was hard to pass may have cut it
     else
@@ -332,29 +331,30 @@ class Marcher {
   void fail(const StepReport& reason, double step) {
     report_.march.end = MarchEnd::failed;
     report_.march.step = reason;
-    report_.march.failed_at = base_.t;
+    report_.march.failed_at = base_->t;
     report_.march.failed_step = step;
     goes_on_ = false;
   }
 
   void note(double step, double error, TryOutcome outcome) {
-    if (log_) log_->tried({base_.t, step, error, outcome});
+    if (log_) log_->tried({base_->t, step, error, outcome});
   }
 
   Stepper& stepper_;
   Estimator& estimator_;
   const StepPlan& plan_;
   Timeline& timeline_;
-  system::State base_;      // the last accepted state, its auxiliary acceleration made for base_step_
-  system::State prepared_;  // the same for the step that is tried
-  system::State to_;
+  std::array<system::State, 2> states_;
+  system::State* base_ = &states_[0];  // the last accepted state, its auxiliary acceleration made for base_step_
+  system::State* to_ = &states_[1];
+  system::State prepared_;               // base_ for the step that is tried
   const system::State* from_ = nullptr;  // base_ or prepared_, where the last try started
   double end_;
   Observer* observer_;
   TryLog* log_;
   std::vector<double> breakpoints_;  // and the end
   std::size_t next_breakpoint_ = 0;
-  mutable std::size_t next_bound_ = 0;  // the first that does not end before base_.t
+  mutable std::size_t next_bound_ = 0;  // the first that does not end before base_->t
   double wanted_ = 0.0, base_step_ = 0.0, lost_ = 0.0;
   double part_ = 0.0;                 // the last step since the last breakpoint
   std::array<double, 16> lengths_{};  // of the last steps, the last first
