@@ -1,7 +1,8 @@
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/run_mechanism.hpp>
 
@@ -157,7 +158,7 @@ struct Flight {
 Flight flight_with(double h) {
   const system::Mechanism mechanism = built(flying_beam);
   const auto stepper =
-      integrate::make_mechanism_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
+      integrate::make_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
   system::MechanismEquations equations(mechanism);
   system::State state = integrate::make_consistent(equations, mechanism.start()).state;
   EXPECT_EQ(integrate::march(*stepper, state, h, 6.0).end, integrate::MarchEnd::reached);
@@ -248,7 +249,7 @@ TEST(PublishedMechanisms, ABodySpunManyTurnsStaysABody) {
       "[[body]]\nname = \"cube\"\nmass = 2.0\ninertia = [0.3, 0.4, 0.5]\nposition = [0.0, 0.0, 0.0]\n"
       "velocity = [1.0, 0.0, 0.0]\nangular_velocity = [0.0, 0.0, 50.0]\n");
   const auto stepper =
-      integrate::make_mechanism_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
+      integrate::make_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
   system::MechanismEquations equations(mechanism);
   system::State state = integrate::make_consistent(equations, mechanism.start()).state;
   EXPECT_EQ(integrate::march(*stepper, state, 0.01, 100.0).end, integrate::MarchEnd::reached);

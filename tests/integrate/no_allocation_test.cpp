@@ -1,7 +1,8 @@
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include "support/double_pendulum.hpp"
 #include "support/locking_bars.hpp"
@@ -77,7 +78,7 @@ TEST(Step, AllocatesNothing) {
 }
 
 long allocations_of_steps(const system::Mechanism& mechanism) {
-  const auto stepper = make_mechanism_stepper(make_method("generalized_alpha"), mechanism);
+  const auto stepper = make_stepper(make_method("generalized_alpha"), mechanism);
   system::MechanismEquations equations(mechanism);
   system::State a = make_consistent(equations, mechanism.start()).state, b = a;
   long before = 0;
@@ -97,13 +98,13 @@ TEST(Step, OfAMechanismAllocatesNothing) {
 TEST(Step, OfASavedStateOfAMechanismRepeatsItsBits) {
   const system::Mechanism mechanism(testing::locking_bars(testing::LockingLaw::none).mechanism);
   const auto method = make_method("generalized_alpha");
-  const auto stepper = make_mechanism_stepper(method, mechanism);
+  const auto stepper = make_stepper(method, mechanism);
   system::MechanismEquations equations(mechanism);
   system::State state = make_consistent(equations, mechanism.start()).state;
   march(*stepper, state, 1e-3, 0.1);
   system::State again = state;
   march(*stepper, state, 1e-3, 0.2);
-  march(*make_mechanism_stepper(method, mechanism), again, 1e-3, 0.2);
+  march(*make_stepper(method, mechanism), again, 1e-3, 0.2);
   EXPECT_EQ(again.q, state.q);
   EXPECT_EQ(again.v, state.v);
   EXPECT_EQ(again.multiplier, state.multiplier);

@@ -4,10 +4,10 @@
 #include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 #include <rubato/analysis/mechanism_size.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
 
 namespace rubato::analysis {
 
@@ -12,8 +12,8 @@ MechanismSize size_of(const system::Mechanism& mechanism) {
   for (const auto& lock : model.locks) size.constraints -= rows(lock.joint);
   for (const auto& friction : model.frictions) size.constraints -= rows(friction.sticking_joint);
   for (const auto& drive : model.drives) size.drives += rows(drive.joint);
-  system::MechanismEquations equations(mechanism);
-  size.redundant = static_cast<Index>(integrate::make_consistent(equations, mechanism.start()).redundant.size());
+  const auto equations = mechanism.equations();
+  size.redundant = static_cast<Index>(integrate::make_consistent(*equations, mechanism.start()).redundant.size());
   return size;
 }
 

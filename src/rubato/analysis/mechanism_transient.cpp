@@ -2,14 +2,15 @@
 #include <rubato/analysis/load_checks.hpp>
 #include <rubato/analysis/mechanism_events.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_balance.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/results/columns/beam_section_forces.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
 
@@ -115,27 +116,27 @@ class MechanismMarch final : public TransientMarch {
   MechanismMarch(const TransientPlan& plan, const system::Mechanism& mechanism)
       : plan_(plan),
         mechanism_(mechanism),
-        stepper_(integrate::make_mechanism_stepper(plan.method, mechanism, newton_of(plan), plan.allow_unstable)),
+        stepper_(integrate::make_stepper(plan.method, mechanism, newton_of(plan), plan.allow_unstable)),
         estimator_(estimator_of(plan, *plan.automatic, mechanism)),
         timeline_(mechanism, resolution * plan.duration),
-        balance_(mechanism),
-        watch_(plan.start, balance_.equations()),
+        equations_(mechanism),
+        balance_(equations_),
+        watch_(plan.start, equations_),
         state_(plan.start) {
     if (!has_equal_steps(plan)) return;  // with steps that change it is carried over by the march
-    integrate::shift_acceleration(balance_.equations(), state_, stepper_->shift() * plan.automatic->plan.first);
+    integrate::shift_acceleration(equations_, state_, stepper_->shift() * plan.automatic->plan.first);
   }
 
   const system::State& state() const override { return state_; }
   integrate::Balance& balance() override { return balance_; }
   std::vector<std::unique_ptr<integrate::EnergyPart>> energy_parts() override {
     std::vector<std::unique_ptr<integrate::EnergyPart>> parts;
-    parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance_, timeline_));
-    if (!mechanism_.model().laws.empty())
-      parts.push_back(std::make_unique<integrate::MechanismLawEnergy>(balance_.equations()));
+    parts.push_back(std::make_unique<integrate::MechanismEnergy>(balance_, equations_, timeline_));
+    if (!mechanism_.model().laws.empty()) parts.push_back(std::make_unique<integrate::MechanismLawEnergy>(equations_));
     return parts;
   }
   results::ColumnGroups columns() override {
-    return results::columns_of_motion(balance_.equations(), plan_.observed, plan_.section_forces);
+    return results::columns_of_motion(equations_, plan_.observed, plan_.section_forces);
   }
   std::vector<double> kinks() const override { return timeline_.breakpoints(plan_.start.t, plan_.duration); }
   integrate::Observer* listener() override { return &watch_; }
@@ -174,7 +175,8 @@ class MechanismMarch final : public TransientMarch {
   std::unique_ptr<integrate::Stepper> stepper_;
   std::unique_ptr<integrate::Estimator> estimator_;
   integrate::MechanismTimeline timeline_;
-  integrate::MechanismBalance balance_;
+  system::MechanismEquations equations_;
+  integrate::ConstrainedBalance balance_;
   MotionWatch watch_;
   system::State state_;
 };
@@ -184,7 +186,9 @@ class MechanismMarch final : public TransientMarch {
 void MechanismTransient::check(const TransientRequest& request, const TransientPlan& plan) const {
   (void)results::BeamSectionForces(mechanism_, request.description.section_forces, request.title());
   try {
-    (void)integrate::make_mechanism_stepper(plan.method, mechanism_, {}, plan.allow_unstable);
+    integrate::NewtonPlan newton;
+    newton.projects_velocities = plan.project_velocities;
+    (void)integrate::make_stepper(plan.method, mechanism_, newton, plan.allow_unstable);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(place(request.description.method.where, request.where), request.title() + fault.message());
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/system/guard.hpp>
 #include <rubato/system/state.hpp>
 
 #include <vector>
@@ -19,18 +20,8 @@ enum class Look {
   at_ends
 };
 
-/// A guard function at the end of a step: positive before the transition that it watches, negative after it.
-struct GuardValue {
-  double value = 0.0;
-  double rate = 0.0;  ///< its derivative with respect to time
-};
-
-/// How a march goes on from a transition.
-enum class Passage {
-  continues,  ///< the acceleration does not jump
-  restarts,   ///< it does, or velocities do: nothing before says anything about what follows
-  fails,      ///< there is no consistent state from which to go on
-};
+using system::GuardValue;
+using system::Passage;
 
 /// What a march with automatic steps asks of the equations besides steps: when something is known to happen, and
 /// whether something has happened. What has happened follows from the two ends of a step alone, so that a try that is

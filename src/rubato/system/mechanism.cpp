@@ -1,9 +1,11 @@
 #include <rubato/core/error.hpp>
 #include <rubato/numerics/rotations.hpp>
 #include <rubato/system/mechanism.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -92,6 +94,31 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   start_.phase.assign(model_.locks.size(), model::lock_open);
   start_.rubbing.assign(model_.frictions.size(), model::friction_free);
   start_.stuck_at = Vector::Zero(static_cast<Index>(model_.frictions.size()));
+}
+
+std::vector<Index> Mechanism::driven_rows() const {
+  std::vector<Index> rows;
+  for (const auto& drive : model_.drives) rows.push_back(first_row(drive.joint));
+  return rows;
+}
+
+bool Mechanism::has_kinks() const {
+  return std::any_of(model_.elements.begin(), model_.elements.end(),
+                     [](const auto& element) { return element->has_kinks(); });
+}
+
+bool Mechanism::has_followed_reactions() const {
+  return std::any_of(model_.frictions.begin(), model_.frictions.end(),
+                     [](const model::JointFriction& friction) { return friction.follows_reaction(); });
+}
+
+bool Mechanism::has_slip_directions() const {
+  return std::any_of(model_.frictions.begin(), model_.frictions.end(),
+                     [](const model::JointFriction& friction) { return friction.partner >= 0; });
+}
+
+std::unique_ptr<ConstrainedEquations> Mechanism::equations() const {
+  return std::make_unique<MechanismEquations>(*this);
 }
 
 double Mechanism::largest_turn() const {

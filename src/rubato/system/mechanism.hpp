@@ -2,8 +2,7 @@
 
 #include <rubato/core/types.hpp>
 #include <rubato/model/mechanism.hpp>
-#include <rubato/system/state.hpp>
-#include <rubato/system/system.hpp>
+#include <rubato/system/constrained_system.hpp>
 
 #include <array>
 #include <string>
@@ -11,33 +10,25 @@
 
 namespace rubato::system {
 
-/// The equations of a mechanism in redundant coordinates:
-///
-///   M a + f(q, v, t) + G(q, t)^T multiplier = 0,   g(q, t) = 0,   G = dg/dq
-///
-/// with the constant mass M [n x n], forces f = internal - external, and velocities in the tangent space of the
-/// configuration. q holds all numbers of all nodes (three a node in the plane, seven in space, the ground first), those
-/// of fixed axes too, and behind them the angles of joints in space whose turns are counted. Immutable;
-/// MechanismEquations evaluates it, one a thread.
-class Mechanism final : public System {
+/// A mechanism in redundant coordinates. q holds all numbers of all nodes (three a node in the plane, seven in space,
+/// the ground first), those of fixed axes too, and behind them the angles of joints in space whose turns are counted.
+class Mechanism final : public ConstrainedSystem {
  public:
   /// Throws InvalidInput for a coordinate without mass.
   explicit Mechanism(model::Mechanism model);
 
-  Index size() const override { return model_.size(); }                        ///< n
-  Index constraint_count() const { return static_cast<Index>(rows_.size()); }  ///< c
-  Index configuration_size() const { return start_.q.size(); }
+  Index size() const override { return model_.size(); }                                 ///< n
+  Index constraint_count() const override { return static_cast<Index>(rows_.size()); }  ///< c
   const model::Mechanism& model() const { return model_; }
-  const SparseMatrix& mass() const { return mass_; }
+  const SparseMatrix& mass() const override { return mass_; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
   const std::vector<std::string>& coordinates() const override { return model_.coordinates; }
   bool is_rotation(Index i) const override { return model_.is_rotation[static_cast<std::size_t>(i)] != 0; }
-  const std::vector<std::string>& rows() const { return rows_; }  ///< of constraints, "JOINT.x" [c]
+  const std::vector<std::string>& rows() const override { return rows_; }  ///< of constraints, "JOINT.x" [c]
   /// The first row of a joint, among the model's.
   Index first_row(int joint) const { return first_row_[static_cast<std::size_t>(joint)]; }
-  /// The state at t = 0 as given: not yet consistent.
-  const State& start() const { return start_; }
-  double reference() const { return model_.reference; }
+  const State& start() const override { return start_; }
+  double reference() const override { return model_.reference; }
   /// The diagonal of the box around all positions [m]; rotations have no size. Of a single point 1 m.
   double extent(const Vector& q) const;
   /// Constant external force: weights [n] [N].
@@ -51,11 +42,15 @@ class Mechanism final : public System {
   void difference(const Vector& q, const Vector& to, Vector& dq) const override;
   /// The numbers of q that the tangent coordinates move, in space the rotation vectors [n] [m], [rad].
   void coordinate_values(const Vector& q, Vector& out) const;
-  /// Turns a small motion in the tangent space at the end of `travel` into the change of `travel` that makes it:
   /// T(rotation)^-1 of each node in space (Bruels, Cardona and Arnold 2012); in the plane they are the same.
-  void to_travel(const Vector& travel, Vector& motion) const;
-  /// M x
-  void times_mass(const Vector& x, Vector& out) const;
+  void to_travel(const Vector& travel, Vector& motion) const override;
+  void times_mass(const Vector& x, Vector& out) const override;
+  std::vector<Index> driven_rows() const override;
+  bool has_kinks() const override;
+  bool has_followed_reactions() const override;
+  bool has_slip_directions() const override;
+  bool has_memory() const override { return model_.law_memory_size > 0; }
+  std::unique_ptr<ConstrainedEquations> equations() const override;
 
  private:
   /// Sets the angles that are counted with their turns to those of q, by continuity from `before`.

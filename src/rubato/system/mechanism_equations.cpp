@@ -5,11 +5,6 @@
 #include <cmath>
 
 namespace rubato::system {
-namespace {
-
-constexpr double share = 1e-10;
-
-}  // namespace
 
 void MechanismEquations::go_to(const State& state, model::Side side) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), velocity_.data() + 1);
@@ -24,7 +19,7 @@ void MechanismEquations::go_to(const State& state, model::Side side) {
 }
 
 void MechanismEquations::scatter(const ElementPlace& place, const double* matrix, double weight) {
-  double* const values = factor_.values();
+  double* const values = saddle_.values();
   for (std::size_t i = 0; i < place.matrix.slot.size(); ++i)
     values[place.matrix.slot[i]] += weight * matrix[place.matrix.local[i]];
 }
@@ -59,10 +54,7 @@ void MechanismEquations::residual(Vector& force, Vector& constraint) {
 
 void MechanismEquations::linearise(const Weights& weights, const Vector& multiplier, Vector& force,
                                    Vector& constraint) {
-  factor_.set_zero();
-  ++factorisations_;
-  double* const values = factor_.values();
-  for (std::size_t i = 0; i < mass_slot_.size(); ++i) values[mass_slot_[i]] += weights.mass * mass_value_[i];
+  saddle_.begin(weights.mass);
   external_force(force);
   force = -force;
   if (weights.friction) {
@@ -87,24 +79,18 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
       joints_[j]->constraint(motion_, g, jacobian);
     }
   }
-  std::fill(row_seen_.begin(), row_seen_.end(), 0.0);
-  const bool is_symmetric = factor_.is_symmetric();  // then one of both is the spare place
+  const bool is_symmetric = saddle_.is_symmetric();  // then one of both is the spare place
+  double* const values = saddle_.values();
   for (const Entry& entry : entries_) {
     const double value = jacobian_[static_cast<std::size_t>(entry.local)];
     values[entry.slot] += value;
     if (!is_symmetric) values[entry.transposed] += value;
-    row_seen_[static_cast<std::size_t>(entry.row)] +=
-        value * value * inverse_mass_[static_cast<std::size_t>(entry.place)];
-  }
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    if (joints_[j]->is_active(motion_)) continue;
-    const auto first = row_seen_.begin() + joint_places_[j].first_row;
-    std::fill(first, first + joints_[j]->rows(), 0.0);
+    saddle_.see(entry.row, entry.place, value);
   }
   // An open lock says nothing: multiplier = 0.
-  const double part = share_of_rows_ = share / (weights.constraint > 0.0 ? weights.constraint : weights.mass);
-  for (std::size_t r = 0; r < row_seen_.size(); ++r)
-    values[row_slot_[r]] -= row_seen_[r] > 0.0 ? part * row_seen_[r] : 1.0;
+  for (std::size_t j = 0; j < joints_.size(); ++j)
+    if (!joints_[j]->is_active(motion_)) saddle_.open_rows(joint_places_[j].first_row, joints_[j]->rows());
+  saddle_.end(weights.constraint > 0.0 ? weights.constraint : weights.mass);
 }
 
 void MechanismEquations::scale_loads(double factor, const Weights& weights, Vector& force) {
@@ -120,45 +106,6 @@ void MechanismEquations::scale_loads(double factor, const Weights& weights, Vect
       force[place.place[i]] += change * local_[static_cast<std::size_t>(place.local[i])];
     scatter(place, matrix_.data(), change);
   }
-}
-
-std::vector<Index> MechanismEquations::redundant_rows(double left) const {
-  std::vector<Index> rows;
-  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
-    const auto row = static_cast<Index>(r);
-    if (row_seen_[r] > 0.0 && std::abs(factor_.pivot(mechanism_.size() + row)) < left * row_seen_[r])
-      rows.push_back(row);
-  }
-  return rows;
-}
-
-Index MechanismEquations::worst_leak(const Vector& correction, double& apart) const {
-  Index worst = -1;
-  apart = 0.0;
-  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
-    const double leak = share_of_rows_ * row_seen_[r] * std::abs(correction[static_cast<Index>(r)]);
-    if (leak <= apart) continue;
-    apart = leak;
-    worst = static_cast<Index>(r);
-  }
-  return worst;
-}
-
-double MechanismEquations::gap_norm(const Vector& constraint) const {
-  double squared = 0.0;
-  for (std::size_t r = 0; r < row_seen_.size(); ++r) {
-    const double gap = constraint[static_cast<Index>(r)];
-    if (row_seen_[r] > 0.0) squared += gap * gap / row_seen_[r];
-  }
-  return std::sqrt(squared);
-}
-
-int MechanismEquations::hardly_held_rows() const {
-  constexpr double left = 10.0 * share;
-  int count = 0;
-  for (std::size_t r = 0; r < row_seen_.size(); ++r)
-    if (std::abs(factor_.pivot(mechanism_.size() + static_cast<Index>(r))) < left * row_seen_[r]) ++count;
-  return count;
 }
 
 void MechanismEquations::add_constraint_force(const Vector& multiplier, double factor, Vector& out) const {
@@ -185,8 +132,6 @@ void MechanismEquations::second_rate(Vector& out) {
   for (std::size_t j = 0; j < joints_.size(); ++j)
     joints_[j]->second_rate(motion_, out.data() + joint_places_[j].first_row);
 }
-
-void MechanismEquations::solve(Vector& x, Vector& y) { factor_.solve(x.data(), y.data()); }
 
 MechanismEquations::Linearised MechanismEquations::linearised(const Vector& multiplier) {
   std::vector<Eigen::Triplet<double>> damping, stiffness, jacobian;

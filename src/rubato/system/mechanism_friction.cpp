@@ -31,8 +31,7 @@ void MechanismEquations::set_duration(double duration) {
     frictions[i].s.slope(q.data(), slope);
     const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[i].joint)];
     for (std::size_t k = 0; k < place.place.size(); ++k)
-      mobility +=
-          slope[place.local[k]] * slope[place.local[k]] * inverse_mass_[static_cast<std::size_t>(place.place[k])];
+      mobility += slope[place.local[k]] * slope[place.local[k]] * saddle_.inverse_mass(place.place[k]);
     const double way = nothing * (frictions[i].s.is_angle() ? 1.0 : size);
     negligible_rate_.push_back(way / duration);
     negligible_.push_back(mobility > 0.0 ? 2.0 * way / (duration * duration * mobility) : 0.0);
@@ -163,6 +162,17 @@ bool MechanismEquations::has_sliding_reactions() const {
   return false;
 }
 
+bool MechanismEquations::lets_go(const State& state) {
+  go_to(state, model::Side::right);
+  constexpr double round_off = 1e-6;
+  for (std::size_t i = 0; i < state.rubbing.size(); ++i) {
+    if (state.rubbing[i] != model::friction_sticks) continue;
+    const double excess = friction_size(i, state.multiplier) - (1.0 + round_off) * friction_limit(i, state.multiplier);
+    if (excess > negligible_friction(i)) return true;
+  }
+  return false;
+}
+
 void MechanismEquations::add_preload_friction(Vector& force) const {
   const auto& frictions = mechanism_.model().frictions;
   for (std::size_t i = 0; i < frictions.size(); ++i) {
@@ -177,7 +187,7 @@ void MechanismEquations::add_preload_friction(Vector& force) const {
 
 void MechanismEquations::linearise_friction(const Weights& weights, const Vector& multiplier) {
   const auto& frictions = mechanism_.model().frictions;
-  double* const values = factor_.values();
+  double* const values = saddle_.values();
   for (std::size_t i = 0; i < frictions.size(); ++i) {
     const auto& friction = frictions[i];
     if (model::sliding_direction(motion_.rubbing[i]) == 0.0) continue;

@@ -54,9 +54,6 @@ MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(
   acceleration_ = other_velocity_ = velocity_;
   step_start_.resize(model.laws.size());
   start_memory_.assign(static_cast<std::size_t>(model.law_memory_size), 0.0);
-  const Vector diagonal = mechanism.mass().diagonal();
-  for (const double mass : diagonal) inverse_mass_.push_back(1.0 / mass);
-  row_seen_.assign(static_cast<std::size_t>(mechanism.constraint_count()), 0.0);
   analyse();
 }
 
@@ -75,12 +72,8 @@ void MechanismEquations::list_entries() {
 }
 
 void MechanismEquations::analyse() {
-  const Index n = mechanism_.size(), size = n + mechanism_.constraint_count();
-  std::vector<numerics::KktFactor::Entry> entries;
-  const SparseMatrix& mass = mechanism_.mass();
-  for (Index column = 0; column < n; ++column)
-    for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry)
-      if (entry.row() >= column) entries.emplace_back(entry.row(), column);
+  const Index n = mechanism_.size();
+  std::vector<SaddleMatrix::Entry> entries;
   bool is_symmetric = true;
   const auto couple = [&](const std::vector<Index>& places) {
     for (const Index i : places)
@@ -106,20 +99,15 @@ void MechanismEquations::analyse() {
   }
   for (const Entry& entry : entries_) entries.emplace_back(n + entry.row, entry.place);
   for (const auto& friction : mechanism_.model().frictions) is_symmetric = is_symmetric && !friction.follows_reaction();
-  factor_.analyse(size, n, entries, is_symmetric);
+  saddle_.analyse(mechanism_.mass(), mechanism_.constraint_count(), std::move(entries), is_symmetric);
 
-  for (Index column = 0; column < n; ++column)
-    for (SparseMatrix::InnerIterator entry(mass, column); entry; ++entry) {
-      mass_slot_.push_back(factor_.slot(entry.row(), column));
-      mass_value_.push_back(entry.value());
-    }
   const auto find_slots = [&](ElementPlace& place, std::size_t k, const std::vector<char>* pattern) {
     for (std::size_t i = 0; i < place.place.size(); ++i)
       for (std::size_t j = 0; j < place.place.size(); ++j) {
         const int local = place.local[i] * static_cast<int>(k) + place.local[j];
         if (pattern && !(*pattern)[static_cast<std::size_t>(local)]) continue;
-        const int slot = factor_.slot(place.place[i], place.place[j]);
-        if (slot == factor_.spare_slot()) continue;
+        const int slot = saddle_.slot(place.place[i], place.place[j]);
+        if (slot == saddle_.spare_slot()) continue;
         place.matrix.slot.push_back(slot);
         place.matrix.local.push_back(local);
       }
@@ -129,17 +117,16 @@ void MechanismEquations::analyse() {
   for (std::size_t j = 0; j < joints_.size(); ++j)
     find_slots(joint_places_[j], joints_[j]->places().size(), &patterns_[j].curvature);
   for (Entry& entry : entries_) {
-    entry.slot = factor_.slot(n + entry.row, entry.place);
-    entry.transposed = factor_.slot(entry.place, n + entry.row);
-    if (entry.slot == factor_.spare_slot()) std::swap(entry.slot, entry.transposed);
+    entry.slot = saddle_.slot(n + entry.row, entry.place);
+    entry.transposed = saddle_.slot(entry.place, n + entry.row);
+    if (entry.slot == saddle_.spare_slot()) std::swap(entry.slot, entry.transposed);
   }
-  for (Index row = n; row < size; ++row) row_slot_.push_back(factor_.slot(row, row));
   for (const auto& friction : mechanism_.model().frictions) {
     FrictionPlace place;
     const JointPlace& joint = joint_places_[static_cast<std::size_t>(friction.joint)];
     for (const Index i : joint.place)
       for (int r = 0; r < friction.pressing_rows; ++r)
-        place.slot.push_back(factor_.slot(i, n + joint.first_row + friction.first_pressing_row + r));
+        place.slot.push_back(saddle_.slot(i, n + joint.first_row + friction.first_pressing_row + r));
     friction_places_.push_back(std::move(place));
   }
 }

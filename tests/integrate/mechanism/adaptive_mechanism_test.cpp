@@ -1,9 +1,10 @@
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/double_pendulum.hpp>
 #include <support/locking_bars.hpp>
@@ -38,7 +39,7 @@ March march_paper(const system::Mechanism& mechanism, double tolerance, double f
                   Seen* seen = nullptr) {
   const auto method = make_method("hht", {{"alpha", -0.15}});
   const auto& alpha = std::get<GeneralizedAlpha>(method.formula);
-  const auto stepper = make_mechanism_stepper(method, mechanism);
+  const auto stepper = make_stepper(method, mechanism);
   system::MechanismEquations equations(mechanism);
   March result;
   const auto start = make_consistent(equations, mechanism.start());
@@ -106,7 +107,7 @@ TEST(AdaptiveDoublePendulum, KeepsToTheToleranceOfTheDefaultControl) {
   const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
   NewtonPlan newton;
   newton.projects_velocities = true;
-  const auto stepper = make_mechanism_stepper(method, mechanism, newton);
+  const auto stepper = make_stepper(method, mechanism, newton);
   system::MechanismEquations equations(mechanism);
   double last = 0.0;
   for (const double tolerance : {1e-3, 1e-4}) {

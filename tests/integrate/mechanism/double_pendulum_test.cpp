@@ -1,8 +1,9 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/double_pendulum.hpp>
 
@@ -38,7 +39,7 @@ class LargestGap final : public integrate::Observer {
 };
 
 Reached march(const system::Mechanism& mechanism, const integrate::Method& method, double h, double end) {
-  const auto stepper = integrate::make_mechanism_stepper(method, mechanism);
+  const auto stepper = integrate::make_stepper(method, mechanism);
   system::MechanismEquations equations(mechanism);
   const auto start = make_consistent(equations, mechanism.start());
   EXPECT_TRUE(start.is_consistent);
@@ -151,14 +152,11 @@ TEST(MechanismStart, TellsWhatCannotBeJoined) {
 
 TEST(MechanismStepper, RefusesAMethodThatDoesNotDampTheMultipliers) {
   const system::Mechanism mechanism(testing::double_pendulum());
-  EXPECT_THROW(integrate::make_mechanism_stepper(integrate::make_method("hht", {{"alpha", 0.0}}), mechanism),
+  EXPECT_THROW(integrate::make_stepper(integrate::make_method("hht", {{"alpha", 0.0}}), mechanism), InvalidInput);
+  EXPECT_THROW(integrate::make_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 1.0}}), mechanism),
                InvalidInput);
-  EXPECT_THROW(
-      integrate::make_mechanism_stepper(integrate::make_method("generalized_alpha", {{"rho_inf", 1.0}}), mechanism),
-      InvalidInput);
-  EXPECT_THROW(integrate::make_mechanism_stepper(integrate::make_method("rk4"), mechanism), InvalidInput);
-  EXPECT_NO_THROW(
-      integrate::make_mechanism_stepper(integrate::make_method("hht", {{"alpha", 0.0}}), mechanism, {}, true));
+  EXPECT_THROW(integrate::make_stepper(integrate::make_method("rk4"), mechanism), InvalidInput);
+  EXPECT_NO_THROW(integrate::make_stepper(integrate::make_method("hht", {{"alpha", 0.0}}), mechanism, {}, true));
 }
 
 TEST(MechanismStepper, KnowsTheSpectralRadiusThatTheFamilyIsNamedAfter) {
@@ -175,8 +173,8 @@ TEST(MechanismStepper, AnswersTheSameWhateverItStartedNewtonFrom) {
   const auto method = integrate::make_method("hht", {{"alpha", -0.15}});
   integrate::NewtonPlan tight;
   tight.tolerance = 1e-13;
-  const auto loose_stepper = integrate::make_mechanism_stepper(method, mechanism);
-  const auto tight_stepper = integrate::make_mechanism_stepper(method, mechanism, tight);
+  const auto loose_stepper = integrate::make_stepper(method, mechanism);
+  const auto tight_stepper = integrate::make_stepper(method, mechanism, tight);
   system::MechanismEquations equations(mechanism);
   system::State loose = make_consistent(equations, mechanism.start()).state, exact = loose;
   integrate::march(*loose_stepper, loose, 1e-3, 2.0);
@@ -188,7 +186,7 @@ TEST(MechanismStepper, StopsAtALoadThatIsNotANumberAndNamesItsCoordinate) {
   auto model = testing::double_pendulum();
   model.forces.push_back({0, model::FormulaLaw{numerics::Formula("t < 0.5 ? 0 : 1/(t-t)", {}, true)}});
   const system::Mechanism mechanism(std::move(model));
-  const auto stepper = integrate::make_mechanism_stepper(integrate::make_method("hht", {{"alpha", -0.15}}), mechanism);
+  const auto stepper = integrate::make_stepper(integrate::make_method("hht", {{"alpha", -0.15}}), mechanism);
   system::MechanismEquations equations(mechanism);
   system::State state = make_consistent(equations, mechanism.start()).state;
   const auto report = integrate::march(*stepper, state, 1e-2, 2.0);

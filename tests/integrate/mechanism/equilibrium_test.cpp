@@ -3,6 +3,7 @@
 #include <rubato/model/beams/exact_beam_space.hpp>
 #include <rubato/model/beams/geometrically_exact.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/double_pendulum.hpp>
 

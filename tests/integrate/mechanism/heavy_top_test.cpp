@@ -1,8 +1,9 @@
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/model/joints/space_joints.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/heavy_top.hpp>
 
@@ -46,7 +47,7 @@ struct Errors {
 Errors errors_at(double h, double end, const Top& exact) {
   const system::Mechanism mechanism = heavy_top();
   const auto method = integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}});
-  const auto stepper = integrate::make_mechanism_stepper(method, mechanism);
+  const auto stepper = integrate::make_stepper(method, mechanism);
   system::MechanismEquations equations(mechanism);
   const auto start = integrate::make_consistent(equations, mechanism.start());
   EXPECT_TRUE(start.is_consistent);

@@ -1,9 +1,10 @@
 #include <rubato/integrate/catalogue.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
 #include <rubato/model/joints/space_joints.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <support/double_pendulum.hpp>
 #include <support/heavy_top.hpp>
@@ -60,10 +61,10 @@ struct Distances {
 /// further.
 Distances distances(const system::Mechanism& mechanism, double h, int steps) {
   const auto method = integrate::make_method("generalized_alpha", {{"rho_inf", 0.9}});
-  const auto stepper = integrate::make_mechanism_stepper(method, mechanism);
+  const auto stepper = integrate::make_stepper(method, mechanism);
   integrate::NewtonPlan further;
   further.tolerance = 1e-13;
-  const auto exact_stepper = integrate::make_mechanism_stepper(method, mechanism, further);
+  const auto exact_stepper = integrate::make_stepper(method, mechanism, further);
   system::MechanismEquations equations(mechanism);
   system::State state = integrate::make_consistent(equations, mechanism.start()).state;
   integrate::shift_acceleration(equations, state, stepper->shift() * h);

@@ -1,8 +1,9 @@
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ struct Worst final : Observer {
 
 Worst swung(double h) {
   const system::Mechanism mechanism(simple_pendulum());
-  const auto stepper = make_mechanism_stepper(make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
+  const auto stepper = make_stepper(make_method("generalized_alpha", {{"rho_inf", 0.9}}), mechanism);
   system::MechanismEquations equations(mechanism);
   system::State state = make_consistent(equations, mechanism.start()).state;
   shift_acceleration(equations, state, stepper->shift() * h);

@@ -1,11 +1,12 @@
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 #include <rubato/model/joints/plane_joints.hpp>
+#include <rubato/system/mechanism_equations.hpp>
 
 #include <gtest/gtest.h>
 
@@ -32,7 +33,7 @@ model::Mechanism hung_bar(int hinges) {
 
 system::State marched(const system::Mechanism& mechanism, double h, double end, NewtonPlan newton = {}) {
   const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
-  const auto stepper = make_mechanism_stepper(method, mechanism, newton);
+  const auto stepper = make_stepper(method, mechanism, newton);
   system::MechanismEquations equations(mechanism);
   system::State state = make_consistent(equations, mechanism.start()).state;
   shift_acceleration(equations, state, stepper->shift() * h);
@@ -162,9 +163,9 @@ TEST(FourBars, EndNoStepInLineWhereThatIsAvoided) {
   const system::Mechanism mechanism(windows(2));
   const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
   NewtonPlan plan;
-  const auto plain = make_mechanism_stepper(method, mechanism, plan);
+  const auto plain = make_stepper(method, mechanism, plan);
   plan.avoids_singular_ends = true;
-  const auto careful = make_mechanism_stepper(method, mechanism, plan);
+  const auto careful = make_stepper(method, mechanism, plan);
   const system::State from = windows_near_line(mechanism, 1e-3);
   double h = 2e-4;
   system::State to = from;
@@ -186,7 +187,7 @@ TEST(FourBars, PassTheirSingularPositionsWithStepsThatChooseThemselves) {
   const auto method = make_method("generalized_alpha", {{"rho_inf", 0.9}});
   NewtonPlan newton;
   newton.projects_velocities = newton.avoids_singular_ends = true;
-  const auto stepper = make_mechanism_stepper(method, mechanism, newton);
+  const auto stepper = make_stepper(method, mechanism, newton);
   system::MechanismEquations equations(mechanism);
   const double turn = turn_of_windows(2, 10.0);
   for (const double tolerance :

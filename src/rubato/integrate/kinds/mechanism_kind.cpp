@@ -27,7 +27,7 @@ Equilibrium MechanismKind::find_equilibrium(const system::State& start, std::spa
   result.is_stable = found.is_stable;
   // Signs of pivots say nothing where loads have no potential, and the matrix is not symmetric.
   constexpr Index most = 600;
-  if (found.is_found && !equations.is_symmetric() && mechanism_.size() <= most)
+  if (found.is_found && !equations.matrix().is_symmetric() && mechanism_.size() <= most)
     result.is_stable = modes_about(equations, result.state, 1).is_stable;
   result.iterations = found.iterations;
   result.load_steps = found.load_steps;

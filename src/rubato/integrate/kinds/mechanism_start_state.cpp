@@ -1,6 +1,6 @@
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -18,10 +18,11 @@ enum Place : std::size_t {
 
 }  // namespace
 
-MechanismEnergy::MechanismEnergy(MechanismBalance& balance, const MechanismTimeline& timeline)
-    : mechanism_(balance.equations().mechanism()),
+MechanismEnergy::MechanismEnergy(Balance& balance, system::MechanismEquations& equations,
+                                 const MechanismTimeline& timeline)
+    : mechanism_(equations.mechanism()),
       balance_(balance),
-      equations_(balance.equations()),
+      equations_(equations),
       timeline_(timeline),
       travel_(mechanism_.size()),
       force_(mechanism_.size()),

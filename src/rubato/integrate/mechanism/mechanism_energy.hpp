@@ -1,7 +1,7 @@
 #pragma once
 
+#include <rubato/integrate/balance.hpp>
 #include <rubato/integrate/energy_ledger.hpp>
-#include <rubato/integrate/mechanism/mechanism_balance.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 
 namespace rubato::integrate {
@@ -17,8 +17,8 @@ namespace rubato::integrate {
 /// stop still held as it let go.
 class MechanismEnergy final : public EnergyPart {
  public:
-  /// @param timeline  of the march
-  MechanismEnergy(MechanismBalance& balance, const MechanismTimeline& timeline);
+  /// @param equations  lent; wherever they are left is well   @param timeline  of the march
+  MechanismEnergy(Balance& balance, system::MechanismEquations& equations, const MechanismTimeline& timeline);
 
   std::vector<Account> accounts() const override;
   void start(const system::State& state) override { keep(state); }
@@ -34,7 +34,7 @@ class MechanismEnergy final : public EnergyPart {
   double strain_energy(const system::State& state);
 
   const system::Mechanism& mechanism_;
-  MechanismBalance& balance_;
+  Balance& balance_;
   system::MechanismEquations& equations_;
   const MechanismTimeline& timeline_;
   Vector travel_, force_, product_;

@@ -85,7 +85,7 @@ class Search {
       if (s.locks_.changes() != changes) return numerics::NewtonVerdict::stop;
       if (!s.is_small(correction)) return numerics::NewtonVerdict::go_on;
       if (!s.settles()) return numerics::NewtonVerdict::stop;
-      s.found_.is_stable = s.factorise(least_shift * s.scale_, load) && s.equations_.is_positive();
+      s.found_.is_stable = s.factorise(least_shift * s.scale_, load) && s.equations_.matrix().is_positive();
       return numerics::NewtonVerdict::converged;
     }
 
@@ -109,7 +109,7 @@ class Search {
           continue;
         }
         norm = s.force_norm();
-        const bool climbs = !s.equations_.is_positive() && shift < most_shift * s.scale_;
+        const bool climbs = !s.equations_.matrix().is_positive() && shift < most_shift * s.scale_;
         correction = s.correct();
         leads_downhill = !climbs;
         if (leads_downhill || !std::isfinite(correction.size)) break;
@@ -130,7 +130,7 @@ class Search {
     numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
       if (!has_changed && s.is_small(correction) && shift <= settled * s.scale_) {
         if (s.settles()) {
-          s.found_.is_stable = s.factorise(least_shift * s.scale_) && s.equations_.is_positive();
+          s.found_.is_stable = s.factorise(least_shift * s.scale_) && s.equations_.matrix().is_positive();
           return numerics::NewtonVerdict::converged;
         }
         has_changed = true;
@@ -213,7 +213,7 @@ class Search {
   /// Whether the state is an equilibrium of its own, from which all that goes downhill begins with round-off.
   bool stands() {
     if (!factorise(least_shift * scale_)) return false;
-    const bool is_stable = equations_.is_positive();
+    const bool is_stable = equations_.matrix().is_positive();
     const Correction correction = correct();
     if (!is_small(correction) || advance(correction.share)) return false;
     found_.is_found = true;
@@ -248,7 +248,8 @@ class Search {
 
   /// What is left of the equations, in the mass norm of the accelerations that it would make [m/s2 sqrt(kg)].
   double force_norm() const {
-    return std::hypot(force_.cwiseQuotient(inertia_.cwiseSqrt()).norm(), scale_ * equations_.gap_norm(constraint_));
+    return std::hypot(force_.cwiseQuotient(inertia_.cwiseSqrt()).norm(),
+                      scale_ * equations_.matrix().gap_norm(constraint_));
   }
 
   /// The share of the correction that turns and shifts nothing too far.

@@ -1,6 +1,6 @@
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/friction_release.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 #include <rubato/model/time_kinks.hpp>
 

@@ -1,5 +1,5 @@
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/mechanism/friction_release.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 #include <rubato/core/error.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/numerics/newton.hpp>
-#include <rubato/system/mechanism_equations.hpp>
+#include <rubato/system/constrained_equations.hpp>
 
 #include <fmt/format.h>
 
@@ -11,29 +12,25 @@
 namespace rubato::integrate {
 namespace {
 
-class MechanismStepper final : public Stepper {
+class ConstrainedStepper final : public Stepper {
  public:
-  MechanismStepper(const GeneralizedAlpha& method, const system::Mechanism& mechanism, const NewtonPlan& plan)
+  ConstrainedStepper(const GeneralizedAlpha& method, const system::ConstrainedSystem& of, const NewtonPlan& plan)
       : p_(method),
         plan_(plan),
-        mechanism_(mechanism),
-        equations_(mechanism),
-        travel_(mechanism.size()),
-        force_(mechanism.size()),
-        product_(mechanism.size()),
-        constraint_(mechanism.constraint_count()) {
-    for (const auto& element : mechanism.model().elements) is_smooth_ = is_smooth_ && !element->has_kinks();
-    for (const auto& friction : mechanism.model().frictions) {
-      has_followed_reactions_ = has_followed_reactions_ || friction.follows_reaction();
-      has_slip_ = has_slip_ || friction.partner >= 0;
-    }
-    is_smooth_ = is_smooth_ && !has_followed_reactions_ && !has_slip_;
+        system_(of),
+        workspace_(of.equations()),
+        equations_(*workspace_),
+        travel_(of.size()),
+        force_(of.size()),
+        product_(of.size()),
+        constraint_(of.constraint_count()),
+        has_followed_reactions_(of.has_followed_reactions()),
+        has_slip_(of.has_slip_directions()) {
+    is_smooth_ = !of.has_kinks() && !has_followed_reactions_ && !has_slip_;
     rules_.most_iterations = plan.most_iterations;
     rules_.keep_below = 0.1;
     if (!has_slip_) rules_.diverged_above = 2.0;
-    tolerance_ = plan.tolerance * (plan.reference > 0.0          ? plan.reference
-                                   : mechanism.reference() > 0.0 ? mechanism.reference()
-                                                                 : std::sqrt(mechanism.mass().diagonal().sum()));
+    tolerance_ = plan.tolerance * (plan.reference > 0.0 ? plan.reference : extent(of));
   }
 
   void step_changes(system::State& state, double ratio) override {
@@ -69,22 +66,22 @@ class MechanismStepper final : public Stepper {
         return fault(StepOutcome::not_converged);
     }
     double apart = 0.0;
-    const Index worst = equations_.worst_leak(constraint_, apart);
+    const Index worst = equations_.matrix().worst_leak(constraint_, apart);
     if (apart > most_apart * (1.0 + from.q.cwiseAbs().maxCoeff())) return {StepOutcome::overdetermined, worst};
     // Where rows repeat each other always, those that do so at one time only are not told apart from them.
-    const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.hardly_held_rows() == 0;
+    const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.matrix().hardly_held_rows() == 0;
     return is_held ? finish(from, h, iterates.is_placed, to) : fault(StepOutcome::singular);
   }
 
   double shift() const override { return p_.alpha_m - p_.alpha_f; }
-  int factorisations() const override { return equations_.factorisations(); }
+  int factorisations() const override { return equations_.matrix().count(); }
 
  private:
   /// The equations of the step as Newton's method sees them. The iterate is the travel and, in `to`, the multipliers;
   /// corrections are measured in the mass norm. After it has converged constraint_ holds the last correction of the
   /// scaled multipliers.
   struct Iterates : numerics::NewtonProblem {
-    Iterates(MechanismStepper& of, const system::State& from_, double h_, system::State& to_)
+    Iterates(ConstrainedStepper& of, const system::State& from_, double h_, system::State& to_)
         : s(of), from(from_), h(h_), to(to_) {}
 
     double evaluate(bool with_tangent) {
@@ -110,11 +107,11 @@ class MechanismStepper final : public Stepper {
       else
         s.equations_.add_constraint_force(to.multiplier, 1.0, s.force_);
       is_first = false;
-      s.mechanism_.times_mass(to.acceleration, s.product_);
+      s.system_.times_mass(to.acceleration, s.product_);
       s.force_ = -s.scale_ * (s.force_ + s.product_);
       s.constraint_ = -s.constraint_;
       s.equations_.solve(s.force_, s.constraint_);
-      s.mechanism_.times_mass(s.force_, s.product_);
+      s.system_.times_mass(s.force_, s.product_);
       return std::sqrt(s.force_.dot(s.product_));
     }
 
@@ -142,7 +139,7 @@ class MechanismStepper final : public Stepper {
       return ratio * before <= s.tolerance_ ? numerics::NewtonVerdict::converged : numerics::NewtonVerdict::go_on;
     }
 
-    MechanismStepper& s;
+    ConstrainedStepper& s;
     const system::State& from;
     const double h;
     system::State& to;
@@ -184,7 +181,7 @@ class MechanismStepper final : public Stepper {
 
   /// Adds the correction in force_ to the travel.
   void take_correction() {
-    mechanism_.to_travel(travel_, force_);
+    system_.to_travel(travel_, force_);
     travel_ += force_;
   }
 
@@ -211,7 +208,7 @@ class MechanismStepper final : public Stepper {
       new_v[i] = v[i] + (before * shifted[i] + after * next);
       now[i] = new_share * next + old_share * shifted[i] - last_share * last[i];
     }
-    mechanism_.retract(from.q, travel_, to.q);
+    system_.retract(from.q, travel_, to.q);
   }
 
   /// @param is_placed  see Iterates
@@ -233,7 +230,7 @@ class MechanismStepper final : public Stepper {
   /// How many rows repeat others in the configuration of the start, with the locks and the friction of now.
   void count_usual_redundancy(const system::State& now) {
     if (usual_ >= 0 && now.phase == usual_for_.phase && now.rubbing == usual_for_.rubbing) return;
-    usual_for_ = mechanism_.start();
+    usual_for_ = system_.start();
     usual_for_.phase = now.phase;
     usual_for_.rubbing = now.rubbing;
     usual_for_.stuck_at = now.stuck_at;
@@ -258,7 +255,7 @@ class MechanismStepper final : public Stepper {
     }
     if (!equations_.has_sliding_reactions()) {
       find_velocity_change(to);
-      mechanism_.times_mass(force_, product_);
+      system_.times_mass(force_, product_);
       const double momentum = product_.norm();
       equations_.add_constraint_force(constraint_, 1.0, product_);
       if (product_.norm() <= foreign * momentum) {
@@ -306,25 +303,28 @@ class MechanismStepper final : public Stepper {
 
   GeneralizedAlpha p_;
   NewtonPlan plan_;
-  const system::Mechanism& mechanism_;
-  system::MechanismEquations equations_;
+  const system::ConstrainedSystem& system_;
+  std::unique_ptr<system::ConstrainedEquations> workspace_;
+  system::ConstrainedEquations& equations_;
   Vector travel_, force_, product_, constraint_;
   numerics::NewtonRules rules_;
   double tolerance_ = 0.0, scale_ = 0.0;
-  bool is_smooth_ = true;                // the slopes of all forces
-  bool has_followed_reactions_ = false;  // by friction
-  bool has_slip_ = false;                // of two frictions that share a limit
+  bool is_smooth_ = true;        // the slopes of all forces
+  bool has_followed_reactions_;  // by friction
+  bool has_slip_;                // directions of friction
   system::State usual_for_;
   int usual_ = -1;  // rows that repeat others; -1: not known yet
 };
 
 }  // namespace
 
-double spectral_radius_at_infinity(const GeneralizedAlpha& p) {
+double spectral_radius_at_infinity(const GeneralizedAlpha& p, bool projects_velocities) {
   // Roots of the characteristic polynomial of the step for omega h -> infinity, in A, h v and q: with f weighted by
   // (1 - alpha_f) and alpha_f, one root is -alpha_f/(1 - alpha_f), the others those of
-  // beta x^2 + (1/2 + gamma - 2 beta) x + (1/2 - gamma + beta) = 0.
+  // beta x^2 + (1/2 + gamma - 2 beta) x + (1/2 - gamma + beta) = 0. Where each step begins with v = 0 only
+  // beta A1 + (1/2 - beta) A0 = 0 is left of the latter.
   const double forces = std::abs(p.alpha_f / (1.0 - p.alpha_f));
+  if (projects_velocities) return std::max(forces, std::abs((0.5 - p.beta) / p.beta));
   const double b = 0.5 + p.gamma - 2.0 * p.beta, c = 0.5 - p.gamma + p.beta;
   const double discriminant = b * b - 4.0 * p.beta * c;
   const double kinematics =
@@ -332,24 +332,26 @@ double spectral_radius_at_infinity(const GeneralizedAlpha& p) {
   return std::max(forces, kinematics);
 }
 
-std::unique_ptr<Stepper> make_mechanism_stepper(const Method& method, const system::Mechanism& mechanism,
-                                                const NewtonPlan& plan, bool force) {
+std::unique_ptr<Stepper> make_stepper(const Method& method, const system::ConstrainedSystem& system,
+                                      const NewtonPlan& plan, bool force) {
   const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
   if (!alpha || !(alpha->beta > 0.0))
     throw InvalidInput(
         fmt::format("{} does not march mechanisms, whose equations are solved implicitly; take "
                     "\"generalized_alpha\", \"hht\" or \"wbz\"",
                     method.name));
-  const double radius = spectral_radius_at_infinity(*alpha);
   constexpr double round_off = 1e-6;  // double roots are found to the square root of round-off
-  if (mechanism.constraint_count() > 0 && !force && !(radius < 1.0 - round_off))
+  const double radius = spectral_radius_at_infinity(*alpha);
+  const bool is_damped = radius < 1.0 - round_off;
+  const bool may_be_projected = spectral_radius_at_infinity(*alpha, true) <= 1.0 + round_off;
+  if (system.constraint_count() > 0 && !force && !is_damped && !(may_be_projected && plan.projects_velocities))
     throw InvalidInput(
         fmt::format("{} with the spectral radius {:.4g} at infinite frequency does not march a mechanism with "
                     "constraints: nothing damps their multipliers, which oscillate from step to step; take "
                     "{{ name = \"hht\", alpha = -0.05 }} or {{ name = \"generalized_alpha\", rho_inf = 0.9 }}, or set "
-                    "allow_unstable = true",
-                    method.name, radius));
-  return std::make_unique<MechanismStepper>(*alpha, mechanism, plan);
+                    "{}allow_unstable = true",
+                    method.name, radius, may_be_projected ? "project_velocities = true or " : ""));
+  return std::make_unique<ConstrainedStepper>(*alpha, system, plan);
 }
 
 }  // namespace rubato::integrate

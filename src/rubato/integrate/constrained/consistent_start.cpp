@@ -1,4 +1,4 @@
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ double largest_magnitude(const Vector& x) { return x.size() > 0 ? x.cwiseAbs().m
 
 /// M and G at the state; its inverse is applied by equations.solve().
 /// @param friction  with the slopes of the friction that reactions make: for accelerations, not for projections
-bool factorise_mass(system::MechanismEquations& equations, const system::State& state, model::Side side, Vector& force,
-                    Vector& constraint, bool friction = false) {
+bool factorise_mass(system::ConstrainedEquations& equations, const system::State& state, model::Side side,
+                    Vector& force, Vector& constraint, bool friction = false) {
   equations.go_to(state, side);
   equations.linearise({1.0, 0.0, 0.0, 0.0, friction}, state.multiplier, force, constraint);
   return equations.factorise();
@@ -28,16 +28,16 @@ bool factorise_mass(system::MechanismEquations& equations, const system::State& 
 /// Acceleration and multipliers of equilibrium as Newton's method sees them. Friction mu |multiplier| is homogeneous in
 /// the multipliers: its slopes at one guess give all of the next, and without it the first correction is the last.
 struct Balancing : numerics::NewtonProblem {
-  Balancing(system::MechanismEquations& equations_, system::State& state_, model::Side side_, bool stands_)
+  Balancing(system::ConstrainedEquations& equations_, system::State& state_, model::Side side_, bool stands_)
       : equations(equations_),
-        mechanism(equations_.mechanism()),
+        of(equations_.system()),
         state(state_),
         side(side_),
         stands(stands_),
-        applied(mechanism.size()),
-        force(mechanism.size()),
-        product(mechanism.size()),
-        wanted(mechanism.constraint_count()),
+        applied(of.size()),
+        force(of.size()),
+        product(of.size()),
+        wanted(of.constraint_count()),
         rate(wanted.size()),
         explicit_rate(wanted.size()) {}
 
@@ -69,7 +69,7 @@ struct Balancing : numerics::NewtonProblem {
   numerics::NewtonVerdict judge(const numerics::NewtonIteration&) {
     const bool is_linear = !equations.has_sliding_reactions();
     // The share of the multipliers in the constraint rows: one correction removes it.
-    mechanism.times_mass(state.acceleration, product);
+    of.times_mass(state.acceleration, product);
     force = -(applied + product);
     equations.add_constraint_force(state.multiplier, -1.0, force);
     equations.constraint_rate(state.acceleration, rate);
@@ -87,15 +87,15 @@ struct Balancing : numerics::NewtonProblem {
     return numerics::NewtonVerdict::converged;
   }
 
-  system::MechanismEquations& equations;
-  const system::Mechanism& mechanism;
+  system::ConstrainedEquations& equations;
+  const system::ConstrainedSystem& of;
   system::State& state;
   model::Side side;
   bool stands;  // nothing moves, drives included
   Vector applied, force, product, wanted, rate, explicit_rate, last;
 };
 
-bool balance(system::MechanismEquations& equations, system::State& state, model::Side side, bool stands) {
+bool balance(system::ConstrainedEquations& equations, system::State& state, model::Side side, bool stands) {
   numerics::NewtonRules rules;
   rules.most_iterations = 30;
   Balancing balancing(equations, state, side, stands);
@@ -109,13 +109,13 @@ bool balance(system::MechanismEquations& equations, system::State& state, model:
 /// Positions that satisfy the constraints, along M^-1 G^T, as Newton's method sees them. What it tells of gaps and of
 /// rows that repeat others is of the last configuration whose matrix had factors.
 struct Joining : numerics::NewtonProblem {
-  Joining(system::MechanismEquations& equations_, ConsistentStart& result_, model::Side side_)
+  Joining(system::ConstrainedEquations& equations_, ConsistentStart& result_, model::Side side_)
       : equations(equations_),
         result(result_),
         state(result_.state),
         side(side_),
-        force(equations_.mechanism().size()),
-        constraint(equations_.mechanism().constraint_count()),
+        force(equations_.system().size()),
+        constraint(equations_.system().constraint_count()),
         other(state.q),
         extent(1.0 + state.q.cwiseAbs().maxCoeff()) {}
 
@@ -150,11 +150,11 @@ struct Joining : numerics::NewtonProblem {
   }
 
   void move(double part) {
-    equations.mechanism().retract(state.q, part * force, other);
+    equations.system().retract(state.q, part * force, other);
     std::swap(state.q, other);
   }
 
-  system::MechanismEquations& equations;
+  system::ConstrainedEquations& equations;
   ConsistentStart& result;
   system::State& state;
   model::Side side;
@@ -165,24 +165,24 @@ struct Joining : numerics::NewtonProblem {
 
 }  // namespace
 
-bool find_acceleration(system::MechanismEquations& equations, system::State& state, model::Side side) {
+bool find_acceleration(system::ConstrainedEquations& equations, system::State& state, model::Side side) {
   return balance(equations, state, side, false);
 }
 
-bool find_acceleration_at_rest(system::MechanismEquations& equations, system::State& state, model::Side side) {
+bool find_acceleration_at_rest(system::ConstrainedEquations& equations, system::State& state, model::Side side) {
   state.v.setZero();
   return balance(equations, state, side, true);
 }
 
-bool add_acceleration(system::MechanismEquations& equations, system::State& state, const Vector& force,
+bool add_acceleration(system::ConstrainedEquations& equations, system::State& state, const Vector& force,
                       const Vector& rate) {
-  const auto& mechanism = equations.mechanism();
+  const auto& of = equations.system();
   Vector left(force.size()), left_rate(rate.size()), rate_of_time(rate.size());
   if (!factorise_mass(equations, state, model::Side::left, left, left_rate, true)) return false;
   Vector acceleration = -force, multiplier = -rate;
   equations.solve(acceleration, multiplier);
   // As in balance(), the share of the multipliers in the constraint rows, and what friction does that is not linear.
-  mechanism.times_mass(acceleration, left);
+  of.times_mass(acceleration, left);
   left = -(force + left);
   equations.add_constraint_force(state.multiplier + multiplier, -1.0, left);
   equations.add_constraint_force(state.multiplier, 1.0, left);
@@ -196,9 +196,9 @@ bool add_acceleration(system::MechanismEquations& equations, system::State& stat
   return true;
 }
 
-ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given, model::Side side) {
-  const auto& mechanism = equations.mechanism();
-  const Index n = mechanism.size(), c = mechanism.constraint_count();
+ConsistentStart make_consistent(system::ConstrainedEquations& equations, system::State given, model::Side side) {
+  const auto& of = equations.system();
+  const Index n = of.size(), c = of.constraint_count();
   ConsistentStart result;
   result.state = std::move(given);
   system::State& state = result.state;
@@ -219,11 +219,11 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   if (!(result.gap <= 1e-10 * extent)) return result;
   result.is_assembled = true;
   Vector force(n), constraint(c), moved(n), product(n);
-  mechanism.difference(first, state.q, moved);
+  of.difference(first, state.q, moved);
   result.most_moved = largest_of(moved, result.position_moved);
   if (result.position_moved <= 1e-12 * extent) result.most_moved = -1;
 
-  mechanism.times_mass(state.v, product);
+  of.times_mass(state.v, product);
   const double before = 0.5 * state.v.dot(product);
   Vector impulse = Vector::Zero(c), rate(c), mean_rate(c), rate_of_time(c);
   equations.constraint_rate(Vector::Zero(n), rate_of_time);
@@ -238,11 +238,8 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   }
   equations.constraint_rate(state.v, rate);
   mean_rate = 0.5 * (mean_rate + rate) - rate_of_time;
-  for (const auto& drive : mechanism.model().drives) {
-    const Index row = mechanism.first_row(drive.joint);
-    result.drive_work -= impulse[row] * mean_rate[row];
-  }
-  mechanism.times_mass(state.v, product);
+  for (const Index row : of.driven_rows()) result.drive_work -= impulse[row] * mean_rate[row];
+  of.times_mass(state.v, product);
   result.energy_lost = before - 0.5 * state.v.dot(product) + result.drive_work;
   result.worst_rate = largest_of(rate, result.gap_rate);
   constexpr double round_off = 1e-12;  // of velocities, where nothing moves
@@ -256,14 +253,14 @@ ConsistentStart make_consistent(system::MechanismEquations& equations, system::S
   return result;
 }
 
-void shift_acceleration(system::MechanismEquations& equations, system::State& state, double shifted_by) {
+void shift_acceleration(system::ConstrainedEquations& equations, system::State& state, double shifted_by) {
   if (shifted_by == 0.0) return;
   // A law with a memory knows the way that it goes on, and not the one back.
-  const bool goes_on = equations.mechanism().model().law_memory_size > 0;
+  const bool goes_on = equations.system().has_memory();
   const double way = goes_on ? std::abs(shifted_by) : shifted_by;
   system::State ahead = state;
   ahead.t += way;
-  equations.mechanism().retract(state.q, way * state.v + (0.5 * way * way) * state.acceleration, ahead.q);
+  equations.system().retract(state.q, way * state.v + (0.5 * way * way) * state.acceleration, ahead.q);
   ahead.v += way * state.acceleration;
   if (goes_on) equations.move_laws(state, ahead);
   if (!find_acceleration(equations, ahead, way > 0.0 ? model::Side::left : model::Side::right)) return;

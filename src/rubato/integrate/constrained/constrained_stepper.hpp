@@ -2,7 +2,7 @@
 
 #include <rubato/integrate/method.hpp>
 #include <rubato/integrate/stepper.hpp>
-#include <rubato/system/mechanism.hpp>
+#include <rubato/system/constrained_system.hpp>
 
 #include <memory>
 
@@ -11,7 +11,7 @@ namespace rubato::integrate {
 /// How far Newton's method goes in a step.
 struct NewtonPlan {
   double tolerance = 1e-10;  ///< of the error left in the positions, in the mass norm over `reference` [-]
-  double reference = 0.0;    ///< l [m sqrt(kg)]; 0: the mechanism's, or of one metre and radian in every coordinate
+  double reference = 0.0;    ///< l [m sqrt(kg)]; 0: the system's, or of one metre and radian in every coordinate
   int most_iterations = 20;
   /// Removes G v + dg/dt from the velocities at the end of each step, with the factors at hand. Constraints on
   /// positions leave it of second order; a step much shorter than the last turns what is left into accelerations of its
@@ -23,7 +23,7 @@ struct NewtonPlan {
   bool avoids_singular_ends = false;
 };
 
-/// The generalized-alpha step of a mechanism with its constraints on positions (index 3; Arnold and Bruels 2007; on
+/// The generalized-alpha step of a system with constraints on positions (index 3; Arnold and Bruels 2007; on
 /// rotations Bruels, Cardona and Arnold 2012):
 ///
 ///   M a1 + f(q1, v1, t1) + G(q1)^T multiplier1 = 0,   g(q1) = 0
@@ -37,12 +37,15 @@ struct NewtonPlan {
 /// slopes beside G^T. Phases of locks and of friction stay as they are.
 ///
 /// Throws InvalidInput for a method of another family and, with constraints, for one that does not damp: of
-/// spectral radius 1 at infinite frequency the multipliers oscillate without end.
+/// spectral radius 1 at infinite frequency the multipliers oscillate without end. With velocities projected such a
+/// method serves as long as nothing grows (beta >= 1/4).
 /// @param force  accept such a method nevertheless
-std::unique_ptr<Stepper> make_mechanism_stepper(const Method& method, const system::Mechanism& mechanism,
-                                                const NewtonPlan& plan = {}, bool force = false);
+std::unique_ptr<Stepper> make_stepper(const Method& method, const system::ConstrainedSystem& system,
+                                      const NewtonPlan& plan = {}, bool force = false);
 
 /// The largest root of the step's characteristic polynomial for omega h -> infinity.
-double spectral_radius_at_infinity(const GeneralizedAlpha& method);
+/// @param projects_velocities  of a step that removes the velocity that is left of such a motion (a constraint) at its
+///                             end
+double spectral_radius_at_infinity(const GeneralizedAlpha& method, bool projects_velocities = false);
 
 }  // namespace rubato::integrate

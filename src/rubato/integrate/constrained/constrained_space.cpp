@@ -1,5 +1,5 @@
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/system/mechanism_equations.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/system/constrained_equations.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,32 +7,28 @@
 namespace rubato::integrate {
 namespace {
 
-double extent_of(const system::Mechanism& mechanism) {
-  return mechanism.reference() > 0.0 ? mechanism.reference() : std::sqrt(mechanism.mass().diagonal().sum());
-}
-
-class MechanismSpace final : public ErrorSpace {
+class ConstrainedSpace final : public ErrorSpace {
  public:
-  MechanismSpace(const system::Mechanism& mechanism, const system::State& start, double tolerance)
-      : mechanism_(mechanism),
+  ConstrainedSpace(const system::ConstrainedSystem& of, const system::State& start, double tolerance)
+      : system_(of),
         start_(start.q),
-        extent_(extent_of(mechanism)),
-        least_(integrate::least_size(mechanism, tolerance)),
+        extent_(integrate::extent(of)),
+        least_(integrate::least_size(of, tolerance)),
         round_off_(std::min(1e-12, 1e-5 * tolerance) * extent_),
-        equations_(mechanism),
-        product_(mechanism.size()),
-        travel_(mechanism.size()),
-        moved_(mechanism.start()),
-        force_(mechanism.size()),
-        constraint_(mechanism.constraint_count()) {}
+        equations_(of.equations()),
+        product_(of.size()),
+        travel_(of.size()),
+        moved_(of.start()),
+        force_(of.size()),
+        constraint_(of.constraint_count()) {}
 
-  Index size() const override { return mechanism_.size(); }
+  Index size() const override { return system_.size(); }
   const Vector& times_mass(const Vector& x) override {
-    mechanism_.times_mass(x, product_);
+    system_.times_mass(x, product_);
     return product_;
   }
   double displacement(const system::State& state) override {
-    mechanism_.difference(start_, state.q, travel_);
+    system_.difference(start_, state.q, travel_);
     return norm(travel_);
   }
   double least_size() override { return least_; }
@@ -43,7 +39,7 @@ class MechanismSpace final : public ErrorSpace {
   bool has_stops() const override { return false; }
   bool touches(const system::State&) const override { return false; }
 
-  /// No more than the mechanism's own size: joints keep an acceleration from leading where it points.
+  /// No more than the system's own size: joints keep an acceleration from leading where it points.
   double promised_size(const ResponseScales& scales) override { return std::min(extent_, scales.size(extent_)); }
 
   ResponseScales scales(const system::State& state, const Vector& acceleration, double duration) override {
@@ -67,23 +63,23 @@ class MechanismSpace final : public ErrorSpace {
     constexpr double small = 1e-6;
     const double way = small * extent_ / length;
     double work = 0.0;
-    equations_.begin_step(state);
+    equations_->begin_step(state);
     for (const double sign : {1.0, -1.0}) {
       moved_ = state;
-      mechanism_.retract(state.q, (sign * way) * x, moved_.q);
-      equations_.go_to_end(moved_, model::Side::right);
-      equations_.residual(force_, constraint_);
-      equations_.add_constraint_force(state.multiplier, 1.0, force_);
+      system_.retract(state.q, (sign * way) * x, moved_.q);
+      equations_->go_to_end(moved_, model::Side::right);
+      equations_->residual(force_, constraint_);
+      equations_->add_constraint_force(state.multiplier, 1.0, force_);
       work += sign * x.dot(force_);
     }
     const double quotient = work / (2.0 * way * length * length);
     return quotient > 0.0 ? std::sqrt(quotient) : 0.0;
   }
 
-  const system::Mechanism& mechanism_;
+  const system::ConstrainedSystem& system_;
   Vector start_;
   double extent_, least_, round_off_;
-  system::MechanismEquations equations_;
+  std::unique_ptr<system::ConstrainedEquations> equations_;
   Vector product_, travel_;
   system::State moved_;
   Vector force_, constraint_;
@@ -91,13 +87,17 @@ class MechanismSpace final : public ErrorSpace {
 
 }  // namespace
 
-double least_size(const system::Mechanism& mechanism, double tolerance) {
-  return std::clamp(1e-2 * std::sqrt(1e-4 / tolerance), 1e-2, 1.0) * extent_of(mechanism);
+double extent(const system::ConstrainedSystem& system) {
+  return system.reference() > 0.0 ? system.reference() : std::sqrt(system.mass().diagonal().sum());
 }
 
-std::unique_ptr<ErrorSpace> make_error_space(const system::Mechanism& mechanism, const system::State& start,
+double least_size(const system::ConstrainedSystem& system, double tolerance) {
+  return std::clamp(1e-2 * std::sqrt(1e-4 / tolerance), 1e-2, 1.0) * extent(system);
+}
+
+std::unique_ptr<ErrorSpace> make_error_space(const system::ConstrainedSystem& system, const system::State& start,
                                              double tolerance) {
-  return std::make_unique<MechanismSpace>(mechanism, start, tolerance);
+  return std::make_unique<ConstrainedSpace>(system, start, tolerance);
 }
 
 }  // namespace rubato::integrate

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <rubato/system/mechanism_equations.hpp>
+#include <rubato/system/constrained_equations.hpp>
 
-#include <string>
 #include <vector>
 
 namespace rubato::integrate {
@@ -34,27 +33,27 @@ struct ConsistentStart {
 /// = 0,   G a + (dG/dt) v + ... = 0. Phases of locks are kept. What cannot be joined is told by `gap` and `worst_row`,
 /// what cannot move together (two drives that contradict each other) by `gap_rate` and `worst_rate`.
 /// @param side  which limit to take of loads that jump at the state's time
-ConsistentStart make_consistent(system::MechanismEquations& equations, system::State given,
+ConsistentStart make_consistent(system::ConstrainedEquations& equations, system::State given,
                                 model::Side side = model::Side::right);
 
 /// Writes acceleration and multiplier of equilibrium of a state that satisfies the constraints; the auxiliary
 /// acceleration becomes the same. Returns false where the matrix cannot be factorised, and where no multipliers go
 /// with the friction that they make (Painleve's paradox).
-bool find_acceleration(system::MechanismEquations& equations, system::State& state, model::Side side);
+bool find_acceleration(system::ConstrainedEquations& equations, system::State& state, model::Side side);
 
 /// The same with all velocities zero and the drives held where they are, whatever their rates: for statics and modes.
-bool find_acceleration_at_rest(system::MechanismEquations& equations, system::State& state, model::Side side);
+bool find_acceleration_at_rest(system::ConstrainedEquations& equations, system::State& state, model::Side side);
 
 /// Adds to acceleration and multiplier of a state what a change of its equations makes of them, where the constraints
 /// and the friction that follows reactions are those of the state:  M da + G^T dmultiplier = -force,  G da = -rate.
 /// Returns false where the matrix cannot be factorised.
 /// @param force  the change of f [n]   @param rate  of second_rate() [c]
-bool add_acceleration(system::MechanismEquations& equations, system::State& state, const Vector& force,
+bool add_acceleration(system::ConstrainedEquations& equations, system::State& state, const Vector& force,
                       const Vector& rate);
 
 /// The auxiliary acceleration of a method that carries that at t + shift h: A = a + shift h da/dt, with da/dt from the
-/// accelerations at both ends of a short motion, of mechanisms that remember always the one that follows. Multipliers
+/// accelerations at both ends of a short motion, of systems that remember always the one that follows. Multipliers
 /// are of second order only with this start (Arnold, Bruels and Cardona 2015).
-void shift_acceleration(system::MechanismEquations& equations, system::State& state, double shifted_by);
+void shift_acceleration(system::ConstrainedEquations& equations, system::State& state, double shifted_by);
 
 }  // namespace rubato::integrate
