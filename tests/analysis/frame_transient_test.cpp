@@ -1,6 +1,7 @@
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
 
@@ -187,7 +188,8 @@ TEST(ModesOfAFrame, HaveDisplacementsAndRotationsInTheirUnits) {
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
-  ASSERT_EQ(run_modes("modes", plan_modes("modes", {}, {}, system, {}), system, context).status, RunStatus::done);
+  const integrate::StructureKind kind(system);
+  ASSERT_EQ(run_modes("modes", plan_modes("modes", {}, {}, kind, {}), kind, nullptr, context).status, RunStatus::done);
   const auto& table = sink.tables.at("modes");
   ASSERT_EQ(table.rows.size(), 16u);
   EXPECT_NEAR(table.rows[0][table.column("angular_frequency")], 55.428662217, 1e-7);

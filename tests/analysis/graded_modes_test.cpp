@@ -1,4 +1,5 @@
 #include <rubato/analysis/modes.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include <support/mechanism_study.hpp>
 #include <support/prepared_study.hpp>
@@ -28,8 +29,8 @@ Recorded run(const std::string& text) {
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
-  result.report =
-      run_modes("modes", plan_modes("modes", {}, {}, study.system, study.parameters), study.system, context);
+  const integrate::StructureKind kind(study.system);
+  result.report = run_modes("modes", plan_modes("modes", {}, {}, kind, study.parameters), kind, nullptr, context);
   return result;
 }
 

@@ -1,5 +1,5 @@
-#include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/model/build_mechanism.hpp>
+#include <rubato/results/drawing/mechanism_drawing.hpp>
 
 #include "support/memory_sink.hpp"
 
@@ -10,6 +10,8 @@
 
 namespace rubato::analysis {
 namespace {
+
+using results::write_structure;
 
 TEST(MechanismTables, TellWhereABodyCarriesItsJoints) {
   model::Mechanism m(2);

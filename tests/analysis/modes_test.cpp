@@ -1,4 +1,5 @@
 #include <rubato/analysis/modes.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include "support/memory_sink.hpp"
 #include "support/models.hpp"
@@ -28,14 +29,15 @@ Recorded run(const system::LocallyNonlinear& system, const model::ModesDescripti
   testing::QuietProgress progress;
   const std::atomic<bool> stop{is_stopped};
   RunContext context{result.sink, progress, stop};
-  result.report = run_modes("natural", plan_modes("natural", {}, description, system, {}), system, context);
+  const integrate::StructureKind kind(system);
+  result.report = run_modes("natural", plan_modes("natural", {}, description, kind, {}), kind, nullptr, context);
   return result;
 }
 
 std::string refusal(const system::LocallyNonlinear& system, const model::ModesDescription& description,
                     const numerics::Parameters& parameters = {}) {
   try {
-    (void)plan_modes("natural", {"study.toml", 4, 1}, description, system, parameters);
+    (void)plan_modes("natural", {"study.toml", 4, 1}, description, integrate::StructureKind(system), parameters);
   } catch (const InvalidInput& fault) {
     return fault.what();
   }
@@ -104,7 +106,7 @@ TEST(Modes, AreTheLowestTwentyUnlessACountIsGiven) {
   EXPECT_EQ(run(system).rows(), 40u);
   model::ModesDescription three;
   three.count = "2 * k + 1";
-  EXPECT_EQ(plan_modes("natural", {}, three, system, {{"k", 1.0}}).count, 3);
+  EXPECT_EQ(plan_modes("natural", {}, three, integrate::StructureKind(system), {{"k", 1.0}}).count, 3);
   three.count = 30.0;
   EXPECT_EQ(run(system, three).rows(), 60u);
 }

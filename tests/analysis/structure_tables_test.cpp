@@ -1,5 +1,5 @@
-#include <rubato/analysis/structure_tables.hpp>
 #include <rubato/model/model.hpp>
+#include <rubato/results/drawing/structure_drawing.hpp>
 
 #include "support/frame.hpp"
 #include "support/memory_sink.hpp"
@@ -8,6 +8,8 @@
 
 namespace rubato::analysis {
 namespace {
+
+using results::write_structure;
 
 TEST(StructureTables, NameNodesWithTheirPositionsAndSupports) {
   testing::MemorySink sink;

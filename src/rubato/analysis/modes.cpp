@@ -1,219 +1,234 @@
+#include <rubato/analysis/equilibrium_text.hpp>
+#include <rubato/analysis/failure_text.hpp>
 #include <rubato/analysis/modes.hpp>
-#include <rubato/core/stopping_aside.hpp>
-#include <rubato/numerics/eigen_damped.hpp>
-#include <rubato/results/columns/observed_columns.hpp>
+#include <rubato/analysis/modes_table.hpp>
+#include <rubato/core/stopping.hpp>
+#include <rubato/results/drawing/kind_drawing.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
-#include <limits>
-#include <numbers>
+#include <algorithm>
 
 namespace rubato::analysis {
 namespace {
 
-constexpr Index default_count = 20;
-constexpr Index largest_dense = 3000;  // all modes of it take minutes
-
-const std::vector<std::string> limits{"free", "stuck"};
-
-bool has_complex(const std::vector<LimitModes>& all) {
-  for (const auto& [limit, found] : all)
-    for (const auto& mode : found.modes)
-      if (mode.is_complex) return true;
-  return false;
+/// What moves is held still, and has other modes than it has in motion.
+void warn_of_motion(const system::State& state, const system::System& system, std::vector<std::string>& warnings) {
+  Index place = 0;
+  const double most = state.v.size() > 0 ? state.v.cwiseAbs().maxCoeff(&place) : 0.0;
+  if (!(most > integrate::standstill)) return;
+  warnings.push_back(fmt::format(
+      "it moves there, \"{}\" by {:.4g} {}, and is held still: what its speed adds, centrifugal and "
+      "Coriolis forces, is left out of these modes (what it stretches is in)",
+      system.coordinates()[static_cast<std::size_t>(place)], most, system.is_rotation(place) ? "rad/s" : "m/s"));
 }
 
-results::TableLayout layout_of(const std::string& name, const std::vector<Observed>& observed, bool is_complex) {
-  const auto scalar = [](const std::string& variable, const std::string& unit, const std::string& description) {
-    return results::Block{variable, unit, description, "", {}};
-  };
-  results::Block limit = scalar("limit", "1", "free: sliders removed; stuck: sliders as springs");
-  limit.categories = limits;
-  results::TableLayout layout{
-      name,
-      "",
-      "row",
-      {limit, scalar("mode", "1", "number within the limit, by rising frequency"),
-       scalar("angular_frequency", "rad/s", "natural, |eigenvalue|"), scalar("frequency", "Hz", "natural"),
-       scalar("damping_ratio", "1", "-Re(eigenvalue) / |eigenvalue|; beyond 1 it does not oscillate"),
-       scalar("eigenvalue_real", "1/s", "the free motion is Re(shape exp(eigenvalue t))"),
-       scalar("eigenvalue_imaginary", "rad/s", "angular frequency of the damped motion")},
-      {{"type", "modes"}, {"normalisation", "conj(shape)^T M shape = 1; the largest entry is real and positive"}}};
-  // With q = shape * (modal coordinate): the latter in m sqrt(kg), for displacements and rotations alike.
-  add_blocks(observed, {"shape", "1/sqrt(kg)", "shape, with a modal mass of 1"},
-             {"angle_shape", "rad/(m sqrt(kg))", "shape of the rotations, on the scale of the displacements"},
-             layout.blocks);
-  if (is_complex)
-    add_blocks(observed, {"shape_imaginary", "1/sqrt(kg)", "imaginary part: a quarter of a period ahead"},
-               {"angle_shape_imaginary", "rad/(m sqrt(kg))", "imaginary part of the shape of the rotations"},
-               layout.blocks);
-  return layout;
-}
-
-std::string complaint(const std::vector<LimitModes>& all, Index count) {
-  for (const auto& [limit, found] : all) {
-    const auto held = static_cast<Index>(found.modes.size());
-    if (found.missing > 0)
-      return fmt::format("{} of the lowest {} modes of the limit {} were not found; ask for a few more or fewer",
-                         std::min(found.missing, count), count, limits[limit]);
-    if (held < count || !found.has_converged)
-      return fmt::format("of {} modes of the limit {} {}: {}", count, limits[limit],
-                         held == 0      ? "none was found"
-                         : held < count ? fmt::format("{} were found", held)
-                                        : "not all were found to more than a few digits",
-                         cause_of_poor_modes(found));
+ModesPlan::Reached reached_by(const integrate::ModesRequest& request, const StudyTransients* transients) {
+  static const std::vector<model::AnalysisDescription> none;
+  const model::ReachedDescription& description = *request.description.about_reached;
+  std::vector<std::string> known;
+  for (const model::AnalysisDescription& analysis : (transients ? transients->analyses : none)) {
+    const auto* transient = std::get_if<model::TransientDescription>(&analysis.task);
+    if (!transient) continue;
+    known.push_back(analysis.name);
+    if (analysis.name != description.analysis) continue;
+    ModesPlan::Reached reached;
+    reached.motion = plan_transient(analysis.name, analysis.where, *transient, transients->kind, request.parameters);
+    reached.analysis = analysis.name;
+    reached.settles = description.settles;
+    const double duration = reached.motion.duration;
+    reached.time = description.time
+                       ? model::evaluate(*description.time, request.parameters, request.title + "about: time")
+                       : duration;
+    if (!(reached.time >= 0.0 && reached.time <= duration))
+      throw InvalidInput(description.time->where,
+                         fmt::format("{}about: time must lie within the {} s of \"{}\", got {}", request.title,
+                                     duration, analysis.name, reached.time));
+    return reached;
   }
+  throw InvalidInput(description.analysis_where,
+                     fmt::format("{}about names \"{}\", which is no transient of this study{}", request.title,
+                                 description.analysis, suggestion(description.analysis, known)));
+}
+
+/// Drives take no part in modes, as if they were locked; empty: there are none.
+std::string held_drives(const std::vector<std::string>& drives) {
+  if (drives.empty()) return {};
+  return fmt::format("the drive{} of \"{}\" {} held still: these are the modes of what is left",
+                     drives.size() == 1 ? "" : "s", fmt::join(drives, "\", \""), drives.size() == 1 ? "is" : "are");
+}
+
+class Listener final : public integrate::Observer {
+ public:
+  explicit Listener(RunContext& context) : context_(context) {}
+  bool accepted(const system::State&, const system::State& after) override {
+    if (++steps_ % 64 == 0) context_.progress.advance(after.t);
+    return !context_.stop.load(std::memory_order_relaxed);
+  }
+
+ private:
+  RunContext& context_;
+  long steps_ = 0;
+};
+
+/// Marches to the configuration that is asked for, and holds it still. What went wrong stands in the report.
+system::State reach(const std::string& name, const ModesPlan::Reached& reached, const integrate::SystemKind& kind,
+                    const TransientKind& transients, RunContext& context, RunReport& report) {
+  const auto march = transients.march(reached.motion);
+  Listener listener(context);
+  context.progress.begin(name, reached.time, "s of motion");
+  const integrate::AdaptiveReport marched = march->go_to(reached.time, &listener, nullptr);
+  context.progress.advance(march->state().t);
+  context.progress.end();
+  if (marched.march.end == integrate::MarchEnd::failed) {
+    report.status = RunStatus::failed;
+    const integrate::MarchFailure failure = march->failure(marched.march);
+    report.message = text_of(failure, advice_on_step(failure, reached.motion));
+  } else if (march->state().t < reached.time) {
+    report.status = RunStatus::interrupted;
+    report.message = fmt::format("interrupted at t = {} s of {} s", march->state().t, reached.time);
+  }
+  if (!report.message.empty()) return march->state();
+  if (!reached.settles) {
+    warn_of_motion(march->state(), kind.system(), report.warnings);
+    return kind.held_still(march->state(), report.warnings);
+  }
+  const StopScope scope(context.stop);
+  const integrate::Equilibrium found = kind.find_equilibrium(march->state(), {});
+  report.message = complaint(found);
+  if (!report.message.empty()) report.status = RunStatus::failed;
+  return found.state;
+}
+
+/// The motions of each limit until someone asks to stop.
+std::vector<integrate::FreeMotions> motions_of(const std::string& name, const ModesPlan& plan,
+                                               const integrate::SystemKind& kind, const system::State& state,
+                                               RunContext& context) {
+  std::vector<integrate::FreeMotions> limits;
+  const Index count = kind.limit_count();
+  context.progress.begin(name, static_cast<double>(count), "limits");
+  try {
+    const StopScope scope(context.stop);
+    for (Index limit = 0; limit < count && !context.stop; ++limit) {
+      limits.push_back(kind.free_motions(state, limit, plan.count));
+      context.progress.advance(static_cast<double>(limit + 1));
+    }
+  } catch (const Stopped&) {
+    // Those that are there are kept.
+  }
+  context.progress.end();
+  return limits;
+}
+
+std::string not_stable(const integrate::FreeMotions& motions, const ModesPlan& plan) {
+  return fmt::format(
+      "the {0} is not stable: a motion that the joints leave {3}, as exp({1:.4g}/s t); {2}",
+      plan.about_equilibrium ? "equilibrium" : "configuration", motions.growth,
+      plan.about_equilibrium ? "begin beside it to be led to one that is" : "about = \"static\" leads to one that is",
+      motions.flutters ? "flutters, which loads without a potential make" : "goes away from it");
+}
+
+/// Why the modes of a limit are not those that were asked for; empty: they are.
+std::string complaint_of(const integrate::FreeMotions& motions, std::size_t limit, const ModesPlan& plan,
+                         const integrate::SystemKind& kind) {
+  const numerics::DampedModes& found = motions.found;
+  const auto held = static_cast<Index>(found.modes.size());
+  if (motions.freedoms == 0) return {};
+  if (!motions.is_stable) return not_stable(motions, plan);
+  if (kind.is_constrained()) {
+    if (!found.has_converged)
+      return "the modes were not found to more than a few digits: " + cause_of_poor_modes(found);
+    if (plan.is_asked && plan.count > motions.freedoms)
+      return fmt::format("{} modes were asked for, and the joints leave {} motions", plan.count, motions.freedoms);
+    return {};
+  }
+  if (found.missing > 0)
+    return fmt::format("{} of the lowest {} modes of the limit {} were not found; ask for a few more or fewer",
+                       std::min(found.missing, plan.count), plan.count, mode_limits[limit]);
+  if (held < plan.count || !found.has_converged)
+    return fmt::format("of {} modes of the limit {} {}: {}", plan.count, mode_limits[limit],
+                       held == 0           ? "none was found"
+                       : held < plan.count ? fmt::format("{} were found", held)
+                                           : "not all were found to more than a few digits",
+                       cause_of_poor_modes(found));
   return {};
 }
 
-constexpr double negligible = 1e-3;  // of the lowest frequency that is not zero, or of a mode's own: not worth a word
-
-double in_hertz(double angular_frequency) { return angular_frequency / (2.0 * std::numbers::pi); }
-
-/// "mode 3", "modes 1 to 3" (they follow one another but for rare exceptions)
-std::string numbers_of(const std::vector<std::size_t>& modes) {
-  return modes.size() == 1 ? fmt::format("mode {}", modes.front() + 1)
-                           : fmt::format("modes {} to {}", modes.front() + 1, modes.back() + 1);
+/// Tells of the modes of a limit, and gives the first complaint to the report.
+void tell_of(const integrate::FreeMotions& motions, std::size_t limit, const ModesPlan& plan,
+             const integrate::SystemKind& kind, RunReport& report) {
+  if (kind.is_constrained()) report.statistics.emplace_back("freedoms", std::to_string(motions.freedoms));
+  report.statistics.emplace_back("residual_" + mode_limits[limit], fmt::format("{:.1e}", motions.found.residual));
+  if (motions.found.missing < 0) report.statistics.emplace_back("completeness_" + mode_limits[limit], "not verified");
+  if (motions.leaves_out_skew)
+    report.warnings.push_back(fmt::format(
+        "the stiffness is not symmetric, by {:.2g} of its size: loads that follow their body have no potential "
+        "(nor has a configuration that is no equilibrium); with more than 400 freedoms these modes leave that part "
+        "out, and tell nothing of flutter, which a transient does",
+        motions.skew));
+  if (motions.is_stable)
+    tell_round_off(kind.limit_count() > 1 ? fmt::format("limit {}: ", mode_limits[limit]) : "", motions.found, report);
+  if (motions.freedoms == 0) report.findings.push_back("there are no modes: the joints and locks leave no motion");
+  if (report.message.empty()) report.message = complaint_of(motions, limit, plan, kind);
 }
 
 }  // namespace
 
-std::string cause_of_poor_modes(const numerics::DampedModes& found) {
-  constexpr double poor = 1e-4;  // as numerics::lowest_damped_modes has it
-  if (!std::isfinite(found.defect))
-    return "some motion has no mass beside that of the others, or a stiffness over its mass that is beyond the largest "
-           "number; give it a mass, or take stiffness and masses that are less far apart";
-  if (found.defect > poor)
-    return fmt::format(
-        "the worst shape is wrong by {:.1e} of itself; ask for fewer, and where light or stiff parts are to be rigid "
-        "take ratios of their stiffness and mass to those of the others that are less far from one, or joints",
-        found.defect);
-  return "the iteration for those that dampers couple, or that lie close together, did not come to an end; ask for a "
-         "few more or fewer";
-}
-
-void tell_round_off(const std::string& title, const numerics::DampedModes& found, RunReport& report) {
-  std::vector<std::size_t> rigid, poor;
-  double hidden = 0.0, lowest = std::numeric_limits<double>::infinity(), worst = 0.0;
-  for (std::size_t i = 0; i < found.modes.size(); ++i) {
-    const numerics::DampedMode& mode = found.modes[i];
-    const double omega = mode.angular_frequency;
-    if (omega == 0.0) {
-      rigid.push_back(i);
-      hidden = std::max(hidden, std::sqrt(mode.round_off));
-      continue;
-    }
-    lowest = std::min(lowest, omega);
-    // omega^2 changes by twice as much as omega.
-    const double share = 0.5 * mode.round_off / (omega * omega);
-    if (share > negligible) poor.push_back(i);
-    worst = std::max(worst, share);
-  }
-  if (!rigid.empty()) {
-    const bool is_one = rigid.size() == 1;
-    const std::string told = fmt::format("{}{} {} at 0 Hz: ", title, numbers_of(rigid), is_one ? "is" : "are");
-    if (hidden <= negligible * lowest && std::isfinite(lowest))
-      report.findings.push_back(told + (is_one ? "a rigid motion" : "rigid motions"));
-    else if (!std::isfinite(lowest))
-      report.findings.push_back(fmt::format("{}{}, or below the round-off of the stiffness, {:.2g} Hz", told,
-                                            is_one ? "a rigid motion" : "rigid motions", in_hertz(hidden)));
-    else
-      report.warnings.push_back(fmt::format(
-          "{}below the round-off of the stiffness; {} rigid, or anywhere up to {:.2g} Hz: very stiff parts move along, "
-          "whose rounding hides what holds them; take them less stiff",
-          told, is_one ? "it is" : "they are", in_hertz(hidden)));
-  }
-  if (!poor.empty())
-    report.warnings.push_back(fmt::format(
-        "{}{} {} known to {:.2g} % only, at worst: very stiff parts move along, and the rounding of their stiffness is "
-        "felt beside what holds them; take them less stiff",
-        title, numbers_of(poor), poor.size() == 1 ? "is" : "are", 100.0 * worst));
-}
-
-void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
-                 results::Sink& sink) {
-  const bool is_complex = has_complex(all);
-  const auto rows = sink.open(layout_of(name, observed, is_complex));
-  for (const auto& [limit, found] : all) {
-    double number = 0.0;
-    for (const auto& mode : found.modes) {
-      std::vector<double> row{static_cast<double>(limit), ++number,
-                              mode.angular_frequency,     mode.angular_frequency / (2.0 * std::numbers::pi),
-                              mode.damping_ratio,         mode.eigenvalue.real(),
-                              mode.eigenvalue.imag()};
-      const Vector real = mode.shape.real(), imaginary = mode.shape.imag();
-      for (const auto& one : observed) row.push_back(one.of(real));
-      if (is_complex)
-        for (const auto& one : observed) row.push_back(one.of(imaginary));
-      rows->append(row);
-    }
-  }
-}
-
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
-                     const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
+                     const integrate::SystemKind& kind, const numerics::Parameters& parameters,
+                     const StudyTransients* transients) {
   const std::string title = "analysis \"" + name + "\": ";
-  const Index n = system.size();
-  if (description.about_equilibrium || description.about_reached)
-    throw InvalidInput(description.about_reached ? description.about_reached->where : *description.about_equilibrium,
-                       title +
-                           "\"about\" is for mechanisms; the modes of a structure are those of its linear model, "
-                           "whatever the loads and the motion");
+  const integrate::ModesRequest request{title, where, description, parameters};
   ModesPlan plan;
-  plan.count = std::min(n, default_count);
-  if (description.count) {
-    const Location& place = description.count->where.line > 0 ? description.count->where : where;
-    const double count = model::evaluate(*description.count, parameters, title + "count");
-    if (!(count >= 1.0) || count != std::floor(count))
-      throw InvalidInput(place, fmt::format("{}count must be a whole number of at least 1, got {}", title, count));
-    if (!(count <= static_cast<double>(n)))
-      throw InvalidInput(place, fmt::format("{}count is {}, but a model of {} coordinate{} has {} mode{}", title, count,
-                                            n, n == 1 ? "" : "s", n, n == 1 ? "" : "s"));
-    plan.count = static_cast<Index>(count);
-    if (n > largest_dense && numerics::is_dense_eigenproblem(n, plan.count))
-      throw InvalidInput(place,
-                         fmt::format("{}count is {}; of a model of {} coordinates ask for at most a third of the "
-                                     "modes, {}",
-                                     title, count, n, n / 3));
+  plan.count = kind.mode_count(request);
+  plan.is_asked = description.count.has_value();
+  plan.observed = observed_or_all(description.observe, {kind.system(), kind.supports()});
+  if (description.about_reached) {
+    plan.reached = reached_by(request, transients);
+    plan.warnings = plan.reached->motion.warnings;
+    return plan;
   }
-  plan.observed = observed_or_all(description.observe, {system, system.supports()});
+  plan.state = kind.static_start(where, plan.warnings);
+  if (!description.about_equilibrium) {
+    plan.state = kind.held_still(plan.state, plan.warnings);
+    return plan;
+  }
+  plan.about_equilibrium = true;
+  integrate::Equilibrium found = kind.find_equilibrium(plan.state, {});
+  plan.failure = complaint(found);
+  plan.state = std::move(found.state);
   return plan;
 }
 
-RunReport run_modes(const std::string& name, const ModesPlan& plan, const system::LocallyNonlinear& system,
-                    RunContext& context) {
-  const std::size_t limit_count = system.slider_count() > 0 ? 2 : 1;
+RunReport run_modes(const std::string& name, const ModesPlan& plan, const integrate::SystemKind& kind,
+                    const TransientKind* transients, RunContext& context) {
   RunReport report;
-  std::vector<LimitModes> all;
-  context.progress.begin(name, static_cast<double>(limit_count), "limits");
-  for (std::size_t limit = 0; limit < limit_count && !context.stop; ++limit) {
-    const SparseMatrix stiffness = limit == 0 ? system.free_stiffness() : system.stuck_stiffness();
-    try {
-      const StopScope scope(context.stop);
-      // Aside: the dense solvers in it cannot be asked to stop.
-      all.push_back({limit, stoppable_aside(
-                                [stiffness, damping = system.free_damping(), mass = system.mass(), count = plan.count] {
-                                  return numerics::lowest_damped_modes(stiffness, damping, mass, count);
-                                })});
-    } catch (const Stopped&) {
-      break;
-    }
-    context.progress.advance(static_cast<double>(limit + 1));
-  }
-  context.progress.end();
-  write_modes(name, plan.observed, all, context.sink);
-  report.message = complaint(all, plan.count);
+  report.warnings = plan.warnings;
+  report.message = plan.failure;
+  if (plan.reached && !plan.reached->motion.failure.empty())
+    report.message = fmt::format("\"{}\" leads nowhere: {}", plan.reached->analysis, plan.reached->motion.failure);
   if (!report.message.empty()) {
     report.status = RunStatus::failed;
-  } else if (all.size() < limit_count) {
-    report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted after {} of {} limits", all.size(), limit_count);
+    return report;
   }
-  for (const auto& [limit, found] : all) {
-    tell_round_off(limit_count > 1 ? fmt::format("limit {}: ", limits[limit]) : "", found, report);
-    report.statistics.emplace_back("residual_" + limits[limit], fmt::format("{:.1e}", found.residual));
-    if (found.missing < 0) report.statistics.emplace_back("completeness_" + limits[limit], "not verified");
+  const system::State state =
+      plan.reached ? reach(name, *plan.reached, kind, *transients, context, report) : plan.state;
+  if (!report.message.empty()) return report;
+  const auto limits = motions_of(name, plan, kind, state, context);
+  if (plan.reached)
+    report.findings.push_back(fmt::format("about {}where \"{}\" is at t = {} s",
+                                          plan.reached->settles ? "the equilibrium next to " : "",
+                                          plan.reached->analysis, plan.reached->time));
+  if (const std::string drives = held_drives(kind.drives()); !drives.empty()) report.findings.push_back(drives);
+  write_modes(name, plan.observed, limits, context.sink);
+  results::draw_configuration(name, kind, state, context.sink);
+  for (std::size_t limit = 0; limit < limits.size(); ++limit) tell_of(limits[limit], limit, plan, kind, report);
+  if (!report.message.empty()) {
+    report.status = RunStatus::failed;
+  } else if (static_cast<Index>(limits.size()) < kind.limit_count()) {
+    report.status = RunStatus::interrupted;
+    report.message = fmt::format("interrupted after {} of {} limits", limits.size(), kind.limit_count());
   }
   return report;
 }

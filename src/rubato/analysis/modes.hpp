@@ -1,48 +1,56 @@
 #pragma once
 
+#include <rubato/analysis/observed.hpp>
 #include <rubato/analysis/run_context.hpp>
+#include <rubato/analysis/transient_kind.hpp>
 #include <rubato/analysis/transient_plan.hpp>
-#include <rubato/numerics/eigen_damped.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace rubato::analysis {
 
-/// Natural modes of a linear model in the two limits of its sliders: `free`, all removed, and `stuck`, all of them
-/// springs kT. A model without sliders has the limit `free` only.
+/// The transients of a study, to which modes may refer.
+struct StudyTransients {
+  const std::vector<model::AnalysisDescription>& analyses;  ///< all of the study
+  const TransientKind& kind;
+};
+
+/// Natural modes about a state at rest: the start, a static equilibrium, or where a transient leads; of a structure in
+/// the limits of its sliders, `free`, all removed, and `stuck`, all of them springs kT. Without sliders there is the
+/// limit `free` only.
 struct ModesPlan {
-  Index count = 0;  ///< the lowest so many of each limit
+  /// The transient that leads there, which the analysis marches again.
+  struct Reached {
+    TransientPlan motion;
+    std::string analysis;
+    double time = 0.0;     ///< [s]
+    bool settles = false;  ///< and on to the equilibrium next to it
+  };
+
+  Index count = 0;        ///< the lowest so many of each limit
+  bool is_asked = false;  ///< the study gives the count
   std::vector<Observed> observed;
+  system::State state;  ///< at rest, with the multipliers of its loads; of one that is reached the start
+  bool about_equilibrium = false;
+  std::optional<Reached> reached;
+  std::vector<std::string> warnings = {};
+  std::string failure;  ///< why the equilibrium was not found: the analysis fails; empty: nothing did
 };
 
-/// Evaluates a description. Throws InvalidInput, at its place, for a count that is no whole number from 1 to the number
-/// of coordinates, and for more than a third of the modes of a model beyond 3,000 coordinates.
+/// Evaluates a description and finds the configuration. Throws InvalidInput, at its place, for a mechanism that cannot
+/// be assembled, a transient that is none of the study's, a count that no such system has, and a model too large.
+/// @param transients  null: the study has none
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
-                     const system::LocallyNonlinear& system, const numerics::Parameters& parameters);
+                     const integrate::SystemKind& kind, const numerics::Parameters& parameters,
+                     const StudyTransients* transients = nullptr);
 
-/// The modes of a limit: 0 `free`, 1 `stuck`.
-struct LimitModes {
-  std::size_t limit;
-  numerics::DampedModes found;
-};
-
-/// Writes the table of run_modes.
-void write_modes(const std::string& name, const std::vector<Observed>& observed, const std::vector<LimitModes>& all,
-                 results::Sink& sink);
-
-/// Why modes did not converge, and what to do about it.
-std::string cause_of_poor_modes(const numerics::DampedModes& found);
-
-/// Tells, of the modes of a limit, which are at 0 Hz and whether those are rigid motions or lie below the round-off of
-/// the stiffness, and which are known to a few digits only because of it.
-/// @param title  what they are of: "limit free: ", or nothing
-void tell_round_off(const std::string& title, const numerics::DampedModes& found, RunReport& report);
-
-/// One row a mode: limit, number, angular frequency, frequency, damping ratio, eigenvalue and shape (with phi^H M phi =
-/// 1; its imaginary part where damping makes a mode of either limit complex). Modes that did not converge, or that a
-/// count shows to be missing, are a failure; those found are written.
-RunReport run_modes(const std::string& name, const ModesPlan& plan, const system::LocallyNonlinear& system,
-                    RunContext& context);
+/// Writes the table of modes; rotations in space are about the axes of the nodes. Modes that did not converge, or that
+/// a count shows to be missing, are a failure; those found are written. So is a configuration that is not stable.
+/// @param transients  of the system; may be null where the plan refers to none
+RunReport run_modes(const std::string& name, const ModesPlan& plan, const integrate::SystemKind& kind,
+                    const TransientKind* transients, RunContext& context);
 
 }  // namespace rubato::analysis

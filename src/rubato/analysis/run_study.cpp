@@ -1,5 +1,3 @@
-#include <rubato/analysis/mechanism_modes.hpp>
-#include <rubato/analysis/mechanism_tables.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
@@ -9,11 +7,12 @@
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
-#include <rubato/analysis/structure_tables.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
+#include <rubato/results/drawing/kind_drawing.hpp>
+#include <rubato/results/drawing/structure_drawing.hpp>
 
 #include <fmt/format.h>
 
@@ -82,10 +81,17 @@ AnalysisOutline outline(const DamperCurvePlan& plan, const system::LocallyNonlin
   return result;
 }
 
-AnalysisOutline outline(const ModesPlan& plan, const system::LocallyNonlinear& system) {
-  const double limits = system.slider_count() > 0 ? 2.0 : 1.0, width = 7.0 + 2.0 * double(plan.observed.size());
-  return {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
-          limits * static_cast<double>(plan.count) * width * 28.0};
+AnalysisOutline outline(const ModesPlan& plan, const integrate::SystemKind& kind) {
+  AnalysisOutline result;
+  if (kind.is_constrained()) {
+    result = {"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(kind.system().size())};
+  } else {
+    const double limits = static_cast<double>(kind.limit_count()), width = 7.0 + 2.0 * double(plan.observed.size());
+    result = {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
+              limits * static_cast<double>(plan.count) * width * 28.0};
+  }
+  result.warnings = warnings_of(plan);
+  return result;
 }
 
 std::unique_ptr<TransientKind> transient_kind(const StudyInput& input) {
@@ -125,19 +131,13 @@ struct Plan {
   }
 
   PlannedAnalysis operator()(const model::ModesDescription& modes) const {
-    if (input.mechanism) {
-      const auto plan = std::make_shared<const MechanismModesPlan>(
-          plan_mechanism_modes(analysis.name, analysis.where, modes, *input.mechanism, input));
-      AnalysisOutline result{"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(input.mechanism->size())};
-      result.warnings = warnings_of(*plan);
-      return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-                return run_mechanism_modes(name, *plan, *at.mechanism, context);
-              }};
-    }
+    const auto kind = kind_of(input);
+    const auto transients = transient_kind(input);
+    const StudyTransients others{input.study.analyses, *transients};
     const auto plan = std::make_shared<const ModesPlan>(
-        plan_modes(analysis.name, analysis.where, modes, input.system, input.parameters));
-    return {outline(*plan, input.system), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-              return run_modes(name, *plan, at.system, context);
+        plan_modes(analysis.name, analysis.where, modes, *kind, input.parameters, &others));
+    return {outline(*plan, *kind), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+              return run_modes(name, *plan, *kind_of(at), transient_kind(at).get(), context);
             }};
   }
 
@@ -204,11 +204,11 @@ bool is_drawn(const model::AnalysisDescription& analysis) {
 RunReport concluded(const model::AnalysisDescription& analysis, RunReport report, const StudyInput& input,
                     RunContext& context) {
   // Modes have written the configuration about which they are.
-  if (input.mechanism && !std::holds_alternative<model::ModesDescription>(analysis.task))
-    write_structure(analysis.name, input.mechanism->model(), context.sink);
+  if (!std::holds_alternative<model::ModesDescription>(analysis.task))
+    results::draw_start(analysis.name, *kind_of(input), context.sink);
   const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();
-  if (is_drawn(analysis) && nodes > 0 && nodes <= most_drawn_nodes)
-    write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);
+  if (is_drawn(analysis) && nodes > 0 && nodes <= results::most_drawn_nodes)
+    results::write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);
   auto notes = report.statistics;
   for (std::size_t i = 0; i < report.warnings.size(); ++i)
     notes.emplace_back(fmt::format("warning{}", i + 1), report.warnings[i]);

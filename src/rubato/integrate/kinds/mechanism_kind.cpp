@@ -1,9 +1,13 @@
+#include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace rubato::integrate {
 
@@ -51,6 +55,57 @@ Equilibrium MechanismKind::find_equilibrium(const system::State& start, std::spa
                        {"residual", fmt::format("{:.2e}", found.residual)},
                        {"stable", result.is_stable ? "yes" : "no"}};
   return result;
+}
+
+Index MechanismKind::mode_count(const ModesRequest& request) const {
+  constexpr Index default_count = 20, largest = 3000;
+  if (mechanism_.size() > largest)
+    throw InvalidInput(request.where,
+                       fmt::format("{}modes of a mechanism are found for up to {} coordinates, and it has {}; divide "
+                                   "its beams into fewer elements",
+                                   request.title, largest, mechanism_.size()));
+  const auto& wanted = request.description.count;
+  if (!wanted) return default_count;
+  const double count = model::evaluate(*wanted, request.parameters, request.title + "count");
+  if (!(count >= 1.0) || count != std::floor(count) || !(count <= static_cast<double>(largest)))
+    throw InvalidInput(
+        wanted->where.line > 0 ? wanted->where : request.where,
+        fmt::format("{}count must be a whole number from 1 to {}, got {}", request.title, largest, count));
+  return static_cast<Index>(count);
+}
+
+system::State MechanismKind::held_still(const system::State& given, std::vector<std::string>& warnings) const {
+  system::State state = given;
+  std::fill(state.rubbing.begin(), state.rubbing.end(), model::friction_free);
+  const system::State free = state;
+  system::MechanismEquations equations(mechanism_);
+  if (!find_acceleration_at_rest(equations, state, model::Side::right)) return free;
+  Vector force(mechanism_.size()), gap(mechanism_.constraint_count()), product(mechanism_.size());
+  equations.go_to(state, model::Side::right);
+  equations.residual(force, gap);
+  mechanism_.times_mass(state.acceleration, product);
+  constexpr double share = 1e-6, round_off = 1e-9;
+  Index place = 0;
+  const double most = state.acceleration.size() > 0 ? state.acceleration.cwiseAbs().maxCoeff(&place) : 0.0;
+  if (product.norm() > share * force.norm() && most > round_off) {
+    const bool moves = given.v.size() > 0 && given.v.cwiseAbs().maxCoeff() > standstill;
+    warnings.push_back(fmt::format("the configuration is no equilibrium: \"{}\" accelerates by {:.4g} {}{}",
+                                   mechanism_.coordinates()[static_cast<std::size_t>(place)], most,
+                                   mechanism_.is_rotation(place) ? "rad/s2" : "m/s2",
+                                   moves ? "" : "; about = \"static\" finds one"));
+  }
+  return state;
+}
+
+FreeMotions MechanismKind::free_motions(const system::State& state, Index /*limit*/, Index count) const {
+  system::MechanismEquations equations(mechanism_);
+  return modes_about(equations, state, count);
+}
+
+std::vector<std::string> MechanismKind::drives() const {
+  std::vector<std::string> names;
+  for (const auto& drive : mechanism_.model().drives) names.push_back(drive.name);
+  return names;
 }
 
 }  // namespace rubato::integrate

@@ -22,6 +22,12 @@ class MechanismKind final : public SystemKind {
   /// Downhill from a configuration that is assembled; friction of joints is left out.
   Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const override;
 
+  Index mode_count(const ModesRequest& request) const override;
+  /// With friction that takes no part.
+  system::State held_still(const system::State& state, std::vector<std::string>& warnings) const override;
+  FreeMotions free_motions(const system::State& state, Index limit, Index count) const override;
+  std::vector<std::string> drives() const override;
+
  private:
   const system::Mechanism& mechanism_;
 };

@@ -1,3 +1,4 @@
+#include <rubato/core/stopping_aside.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
 
@@ -74,6 +75,42 @@ Equilibrium StructureKind::find_equilibrium(const system::State& /*start*/, std:
   result.statistics = {{"factorisations", std::to_string(found.factorisations)}};
   result.state = std::move(found.state);
   return result;
+}
+
+Index StructureKind::mode_count(const ModesRequest& request) const {
+  constexpr Index default_count = 20;
+  constexpr Index largest_dense = 3000;  // all modes of it take minutes
+  const model::ModesDescription& description = request.description;
+  const Index n = system_.size();
+  if (description.about_equilibrium || description.about_reached)
+    throw InvalidInput(description.about_reached ? description.about_reached->where : *description.about_equilibrium,
+                       request.title +
+                           "\"about\" is for mechanisms; the modes of a structure are those of its linear model, "
+                           "whatever the loads and the motion");
+  if (!description.count) return std::min(n, default_count);
+  const Location& place = description.count->where.line > 0 ? description.count->where : request.where;
+  const double count = model::evaluate(*description.count, request.parameters, request.title + "count");
+  if (!(count >= 1.0) || count != std::floor(count))
+    throw InvalidInput(place,
+                       fmt::format("{}count must be a whole number of at least 1, got {}", request.title, count));
+  if (!(count <= static_cast<double>(n)))
+    throw InvalidInput(place, fmt::format("{}count is {}, but a model of {} coordinate{} has {} mode{}", request.title,
+                                          count, n, n == 1 ? "" : "s", n, n == 1 ? "" : "s"));
+  if (n > largest_dense && numerics::is_dense_eigenproblem(n, static_cast<Index>(count)))
+    throw InvalidInput(place, fmt::format("{}count is {}; of a model of {} coordinates ask for at most a third of the "
+                                          "modes, {}",
+                                          request.title, count, n, n / 3));
+  return static_cast<Index>(count);
+}
+
+FreeMotions StructureKind::free_motions(const system::State& /*state*/, Index limit, Index count) const {
+  FreeMotions motions;
+  motions.freedoms = system_.size();
+  // Aside: the dense solvers in it cannot be asked to stop.
+  motions.found = stoppable_aside([stiffness = limit == 0 ? system_.free_stiffness() : system_.stuck_stiffness(),
+                                   damping = system_.free_damping(), mass = system_.mass(),
+                                   count] { return numerics::lowest_damped_modes(stiffness, damping, mass, count); });
+  return motions;
 }
 
 }  // namespace rubato::integrate

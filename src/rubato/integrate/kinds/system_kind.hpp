@@ -2,6 +2,7 @@
 
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/equilibrium/equilibrium.hpp>
+#include <rubato/integrate/equilibrium/free_motions.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/system/moving_supports.hpp>
 #include <rubato/system/system.hpp>
@@ -25,11 +26,21 @@ class KindVisitor {
   virtual void mechanism(const system::Mechanism& mechanism) = 0;
 };
 
+inline constexpr double standstill = 1e-6;  ///< [m/s], [rad/s]: what moves no faster stands
+
 /// What a study asks of an equilibrium, and where it says so.
 struct StaticRequest {
   const std::string& title;  ///< heads the messages
   const Location& where;
   const model::StaticDescription& description;
+};
+
+/// The same of modes.
+struct ModesRequest {
+  const std::string& title;
+  const Location& where;
+  const model::ModesDescription& description;
+  const numerics::Parameters& parameters;
 };
 
 /// A system as analyses see it: what they ask of its equations, which each kind of system finds in its own way. Const;
@@ -57,6 +68,19 @@ class SystemKind {
   virtual bool finds_equilibrium_at_once() const = 0;
   /// The equilibrium under the loads at t = 0, near a given state where there are several.
   virtual Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const = 0;
+
+  // Modes
+  /// How many of the lowest are asked for, or how many there are where it is left to Rubato, at most 20. Refuses keys
+  /// and models for which there are no modes.
+  virtual Index mode_count(const ModesRequest& request) const = 0;
+  /// 1, or 2 where there are sliders: all removed, and all of them springs.
+  virtual Index limit_count() const { return 1; }
+  /// A state whose motion is stopped. That its loads would move it is told in `warnings`.
+  virtual system::State held_still(const system::State& state, std::vector<std::string>& warnings) const = 0;
+  /// The lowest free motions about a state at rest, in one of the limits.
+  virtual FreeMotions free_motions(const system::State& state, Index limit, Index count) const = 0;
+  /// What a drive prescribes takes no part in modes: the names of all drives.
+  virtual std::vector<std::string> drives() const { return {}; }
 };
 
 }  // namespace rubato::integrate

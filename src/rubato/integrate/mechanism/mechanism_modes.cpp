@@ -67,13 +67,13 @@ void keep_lowest(Index count, std::vector<numerics::DampedMode>& modes) {
 
 }  // namespace
 
-MechanismModes modes_about(system::MechanismEquations& equations, const system::State& state, Index count) {
+FreeMotions modes_about(system::MechanismEquations& equations, const system::State& state, Index count) {
   const auto& mechanism = equations.mechanism();
   equations.go_to(state, model::Side::right);
   const auto linear = equations.linearised(state.multiplier);
   const Vector inertia = mechanism.mass().diagonal();
   const Matrix basis = motions_left(linear.jacobian, inertia);
-  MechanismModes result;
+  FreeMotions result;
   result.freedoms = basis.cols();
   if (result.freedoms == 0) return result;
   const Matrix noise = noise_of_multipliers(equations, state.multiplier, linear, basis, inertia);

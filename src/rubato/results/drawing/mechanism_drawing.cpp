@@ -1,6 +1,6 @@
-#include <rubato/analysis/mechanism_tables.hpp>
-#include <rubato/analysis/structure_tables.hpp>
 #include <rubato/numerics/rotations.hpp>
+#include <rubato/results/drawing/mechanism_drawing.hpp>
+#include <rubato/results/drawing/structure_drawing.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::results {
 namespace {
 
 enum Support { free_to_move, held, pinned, clamped };
@@ -54,7 +54,7 @@ class Places {
 
 std::array<double, 3> numbers_of(const numerics::Vector3& v) { return {v[0], v[1], v[2]}; }
 
-results::Block number(const std::string& name, const std::string& unit, const std::string& description) {
+Block number(const std::string& name, const std::string& unit, const std::string& description) {
   return {name, unit, description, "", {}};
 }
 
@@ -118,7 +118,7 @@ struct Drawing {
 };
 
 void write_joints(const std::string& analysis, const model::MechanismDrawing& drawn, const Drawing& drawing,
-                  results::Sink& sink) {
+                  Sink& sink) {
   if (drawn.joints.empty()) return;
   std::vector<std::string> joints;
   for (const auto& joint : drawn.joints) joints.push_back(joint.name);
@@ -142,7 +142,7 @@ void write_joints(const std::string& analysis, const model::MechanismDrawing& dr
   for (const auto& row : drawing.joints) rows->append(row);
 }
 
-void write_shapes(const std::string& analysis, const Drawing& drawing, results::Sink& sink) {
+void write_shapes(const std::string& analysis, const Drawing& drawing, Sink& sink) {
   if (drawing.shapes.empty()) return;
   const std::vector<std::string> kinds{"box", "cylinder", "sphere"};
   const auto rows = sink.open({analysis,
@@ -160,7 +160,7 @@ void write_shapes(const std::string& analysis, const Drawing& drawing, results::
 
 /// @param motion  what the main table tells: "position", or "shape" about the configuration of `numbers`
 void write_drawing(const std::string& analysis, const model::Mechanism& mechanism, std::span<const double> numbers,
-                   const std::string& motion, results::Sink& sink) {
+                   const std::string& motion, Sink& sink) {
   const model::MechanismDrawing& drawn = mechanism.drawing;
   if (drawn.lines.empty() && drawn.joints.empty() && drawn.shapes.empty()) return;
   if (mechanism.nodes.size() > most_drawn_nodes) return;
@@ -168,15 +168,15 @@ void write_drawing(const std::string& analysis, const model::Mechanism& mechanis
   const bool is_shape = motion == "shape";
   const std::string where = is_shape ? " in the configuration of the modes" : " at the start";
   const std::vector<std::string> names = drawing.names();
-  std::vector<results::Block> columns{{"node", "1", "name of the node or point", "", {}, names},
-                                      number("x", "m", "position along x" + where),
-                                      number("y", "m", "position along y" + where),
-                                      number("z", "m", "position along z" + where),
-                                      {"support", "1", "what is fixed", "", {}, {"free", "held", "pinned", "clamped"}},
-                                      number("carrier", "1", "row of the node that carries it; -1: the ground"),
-                                      number("offset_x", "m", "place in the axes of the carrier"),
-                                      number("offset_y", "m", "place in the axes of the carrier"),
-                                      number("offset_z", "m", "place in the axes of the carrier")};
+  std::vector<Block> columns{{"node", "1", "name of the node or point", "", {}, names},
+                             number("x", "m", "position along x" + where),
+                             number("y", "m", "position along y" + where),
+                             number("z", "m", "position along z" + where),
+                             {"support", "1", "what is fixed", "", {}, {"free", "held", "pinned", "clamped"}},
+                             number("carrier", "1", "row of the node that carries it; -1: the ground"),
+                             number("offset_x", "m", "place in the axes of the carrier"),
+                             number("offset_y", "m", "place in the axes of the carrier"),
+                             number("offset_z", "m", "place in the axes of the carrier")};
   if (is_shape)
     for (const char* name : {"rotation_x", "rotation_y", "rotation_z"})
       columns.push_back(number(name, "rad", "rotation vector of its axes" + where));
@@ -211,13 +211,13 @@ void write_drawing(const std::string& analysis, const model::Mechanism& mechanis
 
 }  // namespace
 
-void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink) {
+void write_structure(const std::string& analysis, const model::Mechanism& mechanism, Sink& sink) {
   write_drawing(analysis, mechanism, mechanism.numbers(), "position", sink);
 }
 
 void write_configuration(const std::string& analysis, const model::Mechanism& mechanism,
-                         std::span<const double> numbers, results::Sink& sink) {
+                         std::span<const double> numbers, Sink& sink) {
   write_drawing(analysis, mechanism, numbers, "shape", sink);
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results

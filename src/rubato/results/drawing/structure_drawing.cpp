@@ -1,11 +1,11 @@
-#include <rubato/analysis/structure_tables.hpp>
+#include <rubato/results/drawing/structure_drawing.hpp>
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::results {
 namespace {
 
 enum Support { free_to_move, held, pinned, clamped };
@@ -45,9 +45,9 @@ std::size_t moving_places(const model::Structure& structure) {
 
 }  // namespace
 
-void write_structure(const std::string& analysis, const model::Structure& structure, results::Sink& sink) {
+void write_structure(const std::string& analysis, const model::Structure& structure, Sink& sink) {
   if (structure.elements.empty() || structure.names.size() > most_drawn_nodes) return;
-  const results::Block node{"node", "1", "name of the node", "", {}, structure.names};
+  const Block node{"node", "1", "name of the node", "", {}, structure.names};
   const auto nodes = sink.open({analysis,
                                 "nodes",
                                 "node",
@@ -81,4 +81,4 @@ void write_structure(const std::string& analysis, const model::Structure& struct
   }
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results

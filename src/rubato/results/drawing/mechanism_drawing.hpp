@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace rubato::analysis {
+namespace rubato::results {
 
 /// Writes beside the results of an analysis what a picture of the mechanism needs; nothing beyond most_drawn_nodes.
 ///
@@ -15,12 +15,12 @@ namespace rubato::analysis {
 /// axes of that node). `lines`: of the kinds beam, body, link and strut. `joints`: type, the points `first` and
 /// `second`, the axis in the axes of the node that carries the first, `law` and `limit`. `shapes`: of bodies, with the
 /// box around each [m]. The last two are written where there are any. The main table tells positions.
-void write_structure(const std::string& analysis, const model::Mechanism& mechanism, results::Sink& sink);
+void write_structure(const std::string& analysis, const model::Mechanism& mechanism, Sink& sink);
 
 /// Likewise beside the modes of a mechanism, whose main table tells shapes: small motions about the configuration with
 /// these numbers, where the positions are, with the rotation vectors of the axes there (`rotation_x` and so on [rad]).
 /// @param numbers  of all nodes, the ground first: a configuration q, of which what follows is not read
 void write_configuration(const std::string& analysis, const model::Mechanism& mechanism,
-                         std::span<const double> numbers, results::Sink& sink);
+                         std::span<const double> numbers, Sink& sink);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::results
