@@ -196,6 +196,18 @@ bool add_acceleration(system::ConstrainedEquations& equations, system::State& st
   return true;
 }
 
+void close_gaps(system::ConstrainedEquations& equations, system::State& state, model::Side side) {
+  if (equations.system().constraint_count() == 0) return;
+  ConsistentStart joined;
+  joined.state = state;
+  Joining joining(equations, joined, side);
+  numerics::NewtonRules rules;
+  rules.most_iterations = 5;
+  (void)numerics::newton(joining, rules);
+  joining.evaluate(false);
+  if (joining.gap <= 1e-12 * joining.extent) state.q = joined.state.q;
+}
+
 ConsistentStart make_consistent(system::ConstrainedEquations& equations, system::State given, model::Side side) {
   const auto& of = equations.system();
   const Index n = of.size(), c = of.constraint_count();

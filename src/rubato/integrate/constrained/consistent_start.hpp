@@ -36,6 +36,11 @@ struct ConsistentStart {
 ConsistentStart make_consistent(system::ConstrainedEquations& equations, system::State given,
                                 model::Side side = model::Side::right);
 
+/// Moves positions onto the constraints where a step left them apart. Steps leave what the share E of their own length
+/// does, 1e-10 of sigma times the multipliers: nothing beside the motion in a step of that length, but a much shorter
+/// one that closes such a gap makes accelerations and multipliers of it. What cannot be joined stays as it is.
+void close_gaps(system::ConstrainedEquations& equations, system::State& state, model::Side side);
+
 /// Writes acceleration and multiplier of equilibrium of a state that satisfies the constraints; the auxiliary
 /// acceleration becomes the same. Returns false where the matrix cannot be factorised, and where no multipliers go
 /// with the friction that they make (Painleve's paradox).

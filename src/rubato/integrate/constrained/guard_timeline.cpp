@@ -20,7 +20,10 @@ bool GuardTimeline::jumps_at(double t) {
                      [&](double breakpoint) { return std::abs(breakpoint - t) <= resolution_; });
 }
 
-bool GuardTimeline::restart(system::State& state) { return find_acceleration(*equations_, state, model::Side::right); }
+bool GuardTimeline::restart(system::State& state) {
+  close_gaps(*equations_, state, model::Side::right);
+  return find_acceleration(*equations_, state, model::Side::right);
+}
 
 double GuardTimeline::kinetic_energy(const system::State& state) {
   system_.times_mass(state.v, momentum_);
@@ -48,6 +51,7 @@ Passage GuardTimeline::pass(const system::State& before, system::State& state, d
     state = consistent.state;
     events_.back().energy_lost = energy - kinetic_energy(state);
   }
+  close_gaps(*equations_, state, model::Side::right);
   if (!find_acceleration(*equations_, state, model::Side::right)) return Passage::fails;
   shift_acceleration(*equations_, state, shift);
   return has_jump ? Passage::restarts : Passage::continues;

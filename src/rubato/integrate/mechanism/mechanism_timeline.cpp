@@ -112,7 +112,9 @@ bool MechanismTimeline::restart(system::State& state) {
     goes_on = settle_friction(equations_, state, std::vector<char>(old.size(), 0), ahead());
   note_standing_drives(state.t);
   note_friction(old, state);
-  return goes_on && release(state);
+  if (!goes_on || !release(state)) return false;
+  close_gaps(equations_, state, model::Side::right);
+  return true;
 }
 
 void MechanismTimeline::count_transition(std::size_t guard, const system::State& state) {
@@ -242,6 +244,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
   note_standing_drives(state.t);
   note_friction(old, state);
   if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;
+  close_gaps(equations_, state, model::Side::right);
   shift_acceleration(equations_, state, shift);
   return jumps ? Passage::restarts : Passage::continues;
 }
