@@ -108,6 +108,19 @@ TEST(FormulaThatSwings, ActsAsAMotionOfTheGround) {
   EXPECT_LT(of_moved, 1e-2 * size_of_moved);
 }
 
+// A force that the formula of a law brings along with its spring, a multiple of the steps' length apart from zero to
+// zero: the same motion as under a [[force]].
+TEST(FormulaThatSwings, ActsInALawOfAStructure) {
+  const std::string law =
+      "nonlinear_spring = [{ between = [\"m\", \"ground\"], force = \"60*u - 1000*sin(2*pi*5*t)\" }]\n";
+  const Ran ran = run(oscillator(40.0, law), 100.0);
+  ASSERT_EQ(ran.report.status, RunStatus::done);
+  const auto [error, size] = ran.compared("m", [&](double t) { return forced(1000.0, 10.0, 10.0 * pi, t); });
+  EXPECT_LT(error, 1e-2 * size);
+  EXPECT_THAT(run(oscillator(40.0, law), 10.0, "0.1").report.warnings,
+              Contains(HasSubstr("swings faster than steps of 0.1 s can follow; take 0.03")));
+}
+
 // An impulse of p tau sqrt(pi) at 25 s, of a formula without a switch; few steps for the rest of the run. Pulses below
 // a millisecond lay between the samples of the size that loads promise: their first rise was large beside what had
 // moved, and the run crawled.
@@ -183,6 +196,17 @@ TEST(FormulaThatSwings, DrivesAJoint) {
   ASSERT_EQ(struck.report.status, RunStatus::done) << struck.report.message;
   const double speed = 0.1 * std::sqrt(pi);  // of an inertia of 1 kg m2
   EXPECT_NEAR(struck.last("run", "angular_velocity", "pin"), speed, 1e-2 * speed);
+}
+
+// A pulse that is over within a thousandth of the longest step.
+TEST(FormulaThatSwings, ActsInALawOfAMechanism) {
+  const testing::MechanismStudy ran(
+      "nonlinear_spring = [{ name = \"s\", joint = \"pin\", force = \"u - 100*exp(-((t - 12.3)/0.001)^2)\" }]\n" +
+      hinge(""));
+  ASSERT_EQ(ran.report.status, RunStatus::done) << ran.report.message;
+  const double impulse = 0.1 * std::sqrt(pi);  // on 1 kg m2 and 1 N m/rad
+  EXPECT_NEAR(ran.last("run", "angle", "pin"), impulse * std::sin(25.0 - 12.3), 1e-2 * impulse);
+  EXPECT_NEAR(ran.last("run", "angular_velocity", "pin"), impulse * std::cos(25.0 - 12.3), 1e-2 * impulse);
 }
 
 }  // namespace

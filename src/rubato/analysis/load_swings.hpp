@@ -11,8 +11,8 @@
 
 namespace rubato::analysis {
 
-/// How loads and prescribed motions swing in a run that starts at t = 0: formulas and harmonic laws. Of tables nothing
-/// need be known, since steps end at their rows.
+/// How loads, prescribed motions and laws that depend on time swing in a run that starts at t = 0: formulas and
+/// harmonic laws. Of tables nothing need be known, since steps end at their rows.
 class LoadSwings {
  public:
   LoadSwings(const system::LocallyNonlinear& system, double duration);
@@ -37,6 +37,8 @@ class LoadSwings {
     numerics::Swings swings;
   };
   void take(const model::TimeLaw& law);
+  template <class Laws>
+  void take_laws(const Laws& laws);
   void take(const numerics::Formula& formula, int order);
 
   double duration_;

@@ -3,12 +3,15 @@
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
 
+#include "support/laws.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace rubato::integrate {
 namespace {
@@ -80,6 +83,26 @@ TEST(LocalError, IsNotMeasuredByTheStaticDisplacementOfAFastLoad) {
   plan.largest = 1.0;
   ASSERT_EQ(march(*stepper, *estimator, plan, system, state, last).march.end, MarchEnd::reached);
   EXPECT_NEAR(state.q[0], force / (1.0 - omega * omega) * (std::cos(omega * last) - std::cos(last)), 1e-2);
+}
+
+// The force that a law brings along promises the response that it promises as a load.
+TEST(SizeUnderLoads, CountsWhatALawOfTimeDoesAtRest) {
+  const auto promised = [](bool by_law) {
+    system::LocallyNonlinear::Parts parts;
+    parts.mass = testing::sparse(Matrix::Identity(1, 1));
+    parts.stiffness = testing::sparse((by_law ? 1.0 : 5.0) * Matrix::Identity(1, 1));
+    parts.damping = SparseMatrix(1, 1);
+    const std::string force = "3*sin(2*t) + (t > 7 ? 1 : 0)";
+    if (by_law)
+      parts.laws.push_back({"law", "law", 0, ground, testing::spring("4*u - (" + force + ")")});
+    else
+      parts.loads =
+          system::Loads({system::LoadTerm{{0}, {1.0}, model::FormulaLaw{numerics::Formula(force, {}, true)}}});
+    parts.coordinates = {"mass"};
+    return size_under_loads(system::LocallyNonlinear(std::move(parts)), 30.0);
+  };
+  EXPECT_GT(promised(false), 0.5);
+  EXPECT_NEAR(promised(true), promised(false), 1e-12);
 }
 
 }  // namespace

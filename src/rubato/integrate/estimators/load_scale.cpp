@@ -40,25 +40,45 @@ void add_swings(const std::vector<numerics::StepBound>& bounds, double distance,
   }
 }
 
-/// A law at times within the march, where it swings, and at its kinks, on both sides of a jump.
-std::vector<Sample> samples_of(const model::TimeLaw& law, double duration, int parts,
+/// A force at times within the march, where it swings, and at its kinks, on both sides of a jump.
+/// @param value  of t and the side of a limit
+template <class Value>
+std::vector<Sample> samples_of(Value&& value, const std::vector<double>& kinks, double duration, int parts,
                                const std::vector<numerics::StepBound>& bounds) {
   std::vector<double> times;
   times.push_back(0.0);
   add_times(0.0, duration, parts, times);
   times.push_back(duration);
-  if (!std::holds_alternative<model::TableLaw>(law)) add_swings(bounds, duration / parts, 4.0 * parts, times);
-  const model::Kinks kinks = model::kinks(law, 0.0, duration);
-  times.insert(times.end(), kinks.rows.begin(), kinks.rows.end());
-  times.insert(times.end(), kinks.switches.begin(), kinks.switches.end());
+  add_swings(bounds, duration / parts, 4.0 * parts, times);
+  times.insert(times.end(), kinks.begin(), kinks.end());
   std::sort(times.begin(), times.end());
   std::vector<Sample> samples;
   for (const double t : times)
     for (const model::Side side : {model::Side::left, model::Side::right}) {
-      const double value = model::value(law, t, side);
-      samples.push_back({t, std::isfinite(value) ? value : 0.0});
+      const double force = value(t, side);
+      samples.push_back({t, std::isfinite(force) ? force : 0.0});
     }
   return samples;
+}
+
+std::vector<Sample> samples_of(const model::TimeLaw& load, double duration, int parts,
+                               const std::vector<numerics::StepBound>& bounds) {
+  const model::Kinks kinks = model::kinks(load, 0.0, duration);
+  std::vector<double> times = kinks.rows;
+  times.insert(times.end(), kinks.switches.begin(), kinks.switches.end());
+  return samples_of([&](double t, model::Side side) { return model::value(load, t, side); }, times, duration, parts,
+                    std::holds_alternative<model::TableLaw>(load) ? std::vector<numerics::StepBound>{} : bounds);
+}
+
+/// What a law that depends on time does where nothing moves.
+std::vector<Sample> samples_of(const model::Law& law, double duration, int parts,
+                               const std::vector<numerics::StepBound>& bounds) {
+  const std::vector<double> memory(static_cast<std::size_t>(law.memory_size()), 0.0);
+  return samples_of(
+      [&](double t, model::Side side) {
+        return law.at({0.0, 0.0, t, side}, memory.data()).force;
+      },
+      law.breakpoints(0.0, duration), duration, parts, bounds);
 }
 
 double largest_of(const std::vector<Sample>& samples) {
@@ -89,17 +109,33 @@ double largest_response(const std::vector<Sample>& p, double omega) {
 double size_under_loads(const system::LocallyNonlinear& system, double duration,
                         const std::vector<numerics::StepBound>& bounds) {
   const system::Loads loads = system.loads();  // a copy: formulas are workspaces
-  if (loads.terms().empty()) return 0.0;
+  std::vector<std::size_t> laws;               // of time
+  for (std::size_t j = 0; j < system.laws().size(); ++j)
+    if (system.laws()[j].law->depends_on_time()) laws.push_back(j);
+  if (loads.terms().empty() && laws.empty()) return 0.0;
   numerics::OrderedFactor factor;
-  const SparseMatrix held = SparseMatrix(system.stuck_stiffness() + 1.0 / duration * system.damping()) +
-                            2.0 / (duration * duration) * system.mass();
-  factor.analyse(held, {});
-  if (!factor.factorise(held)) return 0.0;  // a stiffness that is not one: nothing is promised
+  const SparseMatrix stiffness = SparseMatrix(system.stuck_stiffness() + 1.0 / duration * system.damping()) +
+                                 2.0 / (duration * duration) * system.mass();
+  factor.analyse(stiffness, {});
+  if (!factor.factorise(stiffness)) return 0.0;  // a stiffness that is not one: nothing is promised
   MassNorm norm(system);
   double squared = 0.0;
   // Enough for one load, and not too many for thousands.
-  const int parts = static_cast<int>(std::max<std::size_t>(64, 4096 / loads.terms().size()));
+  const int parts = static_cast<int>(std::max<std::size_t>(64, 4096 / (loads.terms().size() + laws.size())));
   Vector force(system.size()), q(system.size());
+  // Of what acts with its largest value as `force` says.
+  const auto add = [&](auto&& reached) {
+    factor.solve(force, q);
+    const double held = norm(q);
+    if (!(held > 0.0 && std::isfinite(held))) return;
+    const double size = reached(held, force.dot(q) / (held * held));
+    squared += size * size;
+  };
+  const auto under = [](const std::vector<Sample>& samples, double largest) {
+    return [&samples, largest](double size, double omega_squared) {
+      return size * std::min(1.0, largest_response(samples, std::sqrt(omega_squared)) / largest);
+    };
+  };
   for (const auto& term : loads.terms()) {
     const auto* harmonic = std::get_if<model::HarmonicLaw>(&term.law);
     std::vector<Sample> samples;
@@ -108,15 +144,22 @@ double size_under_loads(const system::LocallyNonlinear& system, double duration,
     if (!(largest > 0.0)) continue;
     force.setZero();
     for (std::size_t i = 0; i < term.rows.size(); ++i) force[term.rows[i]] += largest * term.weights[i];
-    factor.solve(force, q);
-    double size = norm(q);
-    if (!(size > 0.0 && std::isfinite(size))) continue;
-    const double omega_squared = force.dot(q) / (size * size);
     if (harmonic)
-      size /= std::max(1.0, std::pow(harmonic->angular_frequency, 2) / omega_squared);
+      add([&](double size, double omega_squared) {
+        return size / std::max(1.0, std::pow(harmonic->angular_frequency, 2) / omega_squared);
+      });
     else
-      size *= std::min(1.0, largest_response(samples, std::sqrt(omega_squared)) / largest);
-    squared += size * size;
+      add(under(samples, largest));
+  }
+  for (const std::size_t j : laws) {
+    const auto samples = samples_of(*system.laws()[j].law, duration, parts, bounds);
+    const double largest = largest_of(samples);
+    if (!(largest > 0.0)) continue;
+    const auto& ends = system.contacts()[static_cast<std::size_t>(system.first_law()) + j];
+    force.setZero();
+    if (ends.first != ground) force[ends.first] -= largest;
+    if (ends.second != ground) force[ends.second] += largest;
+    add(under(samples, largest));
   }
   return std::sqrt(squared);
 }

@@ -7,9 +7,9 @@
 
 namespace rubato::integrate {
 
-/// How large a response the loads of a march promise, in the mass norm [m sqrt(kg)]; 0 without loads. Each load counts
-/// with its largest value at the displacement that it would hold on the structure with its sliders stuck, which inertia
-/// and damping limit to what happens within the duration T:
+/// How large a response the loads of a march promise, in the mass norm [m sqrt(kg)]; 0 without loads. What a law that
+/// depends on time does at rest is a load. Each counts with its largest value at the displacement that it would hold on
+/// the structure with its sliders stuck, which inertia and damping limit to what happens within the duration T:
 ///
 ///   q_j = (K + kT of the sliders + C/T + 2/T^2 M)^-1 w_j,   size^2 = sum of (max |law_j| |q_j|_M r_j)^2
 ///

@@ -2,6 +2,7 @@
 
 #include <rubato/core/types.hpp>
 #include <rubato/model/time_law.hpp>
+#include <rubato/numerics/formula.hpp>
 
 #include <limits>
 #include <vector>
@@ -57,6 +58,9 @@ class Law {
 
   virtual bool depends_on_rate() const { return false; }
   virtual bool depends_on_time() const { return false; }
+  /// The formula by which it does: what swings in it bounds automatic steps. Null where there is none; of a law that
+  /// swings by other means nothing is known, and the study must say how long steps may be.
+  virtual const numerics::Formula* formula_of_time() const { return nullptr; }
   /// Whether the opposite motion makes the opposite force.
   virtual bool is_odd() const { return false; }
   /// Times in (from, to) at which a law that depends on time is not smooth, rising.

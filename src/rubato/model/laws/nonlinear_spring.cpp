@@ -50,6 +50,7 @@ class NonlinearSpring final : public Law {
 
   bool depends_on_rate() const override { return uses_rate_; }
   bool depends_on_time() const override { return force_.uses_time(); }
+  const numerics::Formula* formula_of_time() const override { return force_.uses_time() ? &force_ : nullptr; }
   bool is_odd() const override { return is_odd_; }
   std::vector<double> breakpoints(double from, double to) const override {
     return force_.has_switches() ? force_.switches(from, to) : std::vector<double>{};
