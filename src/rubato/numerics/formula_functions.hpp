@@ -8,12 +8,19 @@
 
 namespace rubato::numerics {
 
+/// What the opposite arguments make of a value: the same, f(-x) = f(x), or the opposite, f(-x) = -f(x). Of zero both;
+/// neither where nothing is known.
+struct Parity {
+  bool is_even = false, is_odd = false;
+};
+
 /// A function of one number that formulas know.
 struct FormulaFunction {
   const char* name;
   double (*value)(double);
   TimeDerivatives (*derivatives)(double);  ///< with its derivatives with respect to the number
   IntervalSeries (*over_interval)(const IntervalSeries&, int order);
+  Parity parity;
 };
 
 const std::array<FormulaFunction, 18>& formula_functions();

@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/model/laws/law_kind.hpp>
+#include <rubato/numerics/formula_parity.hpp>
 #include <rubato/numerics/gauss_legendre.hpp>
 
 #include <fmt/format.h>
@@ -14,15 +15,10 @@ namespace {
 /// depend on time.
 class NonlinearSpring final : public Law {
  public:
-  explicit NonlinearSpring(numerics::Formula force) : force_(std::move(force)), uses_rate_(force_.uses(1)) {
-    is_odd_ = !force_.uses_time();
-    // As far as samples tell; amplitudes of what is taken for odd without being so would lose their mean.
-    for (double u = 1e-3; is_odd_ && u < 1e4; u *= 3.7)
-      for (const double rate : {0.0, 0.31 * u, -2.3 * u}) {
-        const double there = value(u, rate, 0.0), back = value(-u, -rate, 0.0);
-        is_odd_ = is_odd_ && std::abs(there + back) <= 1e-12 * (std::abs(there) + std::abs(back));
-      }
-  }
+  explicit NonlinearSpring(numerics::Formula force)
+      : force_(std::move(force)),
+        uses_rate_(force_.uses(1)),
+        is_odd_(!force_.uses_time() && numerics::parity_of(force_).is_odd) {}
 
   LawAnswer advance(const LawPoint&, const double* memory, const LawPoint& to, double*) const override {
     return at(to, memory);
@@ -95,7 +91,7 @@ class NonlinearSpring final : public Law {
   }
 
   numerics::Formula force_;  // of u, rate and t
-  bool uses_rate_, is_odd_ = false;
+  bool uses_rate_, is_odd_;
 };
 
 std::shared_ptr<const Law> make(const LawDescription& description, const numerics::Parameters& parameters,
