@@ -13,15 +13,17 @@ struct RouteInfo {
   const char* title;
 };
 
-constexpr std::array<RouteInfo, route_count> routes{{{"steps", "a transient with steps"},
-                                                     {"exact", "the method exact"},
-                                                     {"static", "a static analysis"},
-                                                     {"modes", "modes"},
-                                                     {"periodic", "the solver periodic"},
-                                                     {"harmonic_balance", "the solver harmonic_balance"},
-                                                     {"time_marching", "the solver time_marching"},
-                                                     {"damper_curve", "a damper curve"},
-                                                     {"method_study", "a method study"}}};
+constexpr std::array<RouteInfo, route_count> routes{
+    RouteInfo{"steps", "a transient with steps"},
+    RouteInfo{"exact", "the method exact"},
+    RouteInfo{"static", "a static analysis"},
+    RouteInfo{"modes", "modes"},
+    RouteInfo{"periodic", "the solver periodic"},
+    RouteInfo{"harmonic_balance", "the solver harmonic_balance"},
+    RouteInfo{"time_marching", "the solver time_marching"},
+    RouteInfo{"damper_curve", "a damper curve"},
+    RouteInfo{"method_study", "a method study"},
+};
 
 constexpr const char* a_march = "take solver = \"time_marching\"";
 constexpr const char* balance_or_march = "take solver = \"harmonic_balance\" or \"time_marching\"";
@@ -31,52 +33,68 @@ constexpr const char* marched_sweep = "take a frequency_response with solver = \
 constexpr const char* balanced_sweep = "take a frequency_response with solver = \"harmonic_balance\" and a sweep";
 constexpr const char* transient = "take a transient";
 
-// By Element, then by Route.
-constexpr std::array<std::array<Handling, route_count>, element_count> table{{{{{"yes", ""},
-                                                                                {"yes", ""},
-                                                                                {"yes", ""},
-                                                                                {"stuck, free", ""},
-                                                                                {"yes", ""},
-                                                                                {"closed form", ""},
-                                                                                {"yes", ""},
-                                                                                {"yes", ""},
-                                                                                {"", ""}}},
-                                                                              {{{"yes", ""},
-                                                                                {"", located},
-                                                                                {"yes", ""},
-                                                                                {"open", ""},
-                                                                                {"", a_march},
-                                                                                {"", a_march},
-                                                                                {"yes", ""},
-                                                                                {"", marched_sweep},
-                                                                                {"", ""}}},
-                                                                              {{{"yes", ""},
-                                                                                {"", small_steps},
-                                                                                {"yes", ""},
-                                                                                {"slopes at rest", ""},
-                                                                                {"", balance_or_march},
-                                                                                {"by samples", ""},
-                                                                                {"yes", ""},
-                                                                                {"", balanced_sweep},
-                                                                                {"", ""}}},
-                                                                              {{{"yes", ""},
-                                                                                {"", small_steps},
-                                                                                {"yes", ""},
-                                                                                {"stuck, free", ""},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", ""}}},
-                                                                              {{{"yes", ""},
-                                                                                {"", small_steps},
-                                                                                {"as it is", ""},
-                                                                                {"as it is", ""},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", transient},
-                                                                                {"", ""}}}}};
+constexpr Handling takes(const char* how) { return {how, ""}; }
+constexpr Handling refuses(const char* instead = "") { return {"", instead}; }
+
+// What an element meets on each route, in the order of Route.
+using Row = std::array<Handling, route_count>;
+constexpr Row slider{
+    takes("yes"),          // steps
+    takes("yes"),          // exact
+    takes("yes"),          // equilibrium
+    takes("stuck, free"),  // modes
+    takes("yes"),          // periodic
+    takes("closed form"),  // harmonic_balance
+    takes("yes"),          // time_marching
+    takes("yes"),          // damper_curve
+    refuses(),             // method_study
+};
+constexpr Row stop{
+    takes("yes"),            // steps
+    refuses(located),        // exact
+    takes("yes"),            // equilibrium
+    takes("open"),           // modes
+    refuses(a_march),        // periodic
+    refuses(a_march),        // harmonic_balance
+    takes("yes"),            // time_marching
+    refuses(marched_sweep),  // damper_curve
+    refuses(),               // method_study
+};
+constexpr Row law{
+    takes("yes"),               // steps
+    refuses(small_steps),       // exact
+    takes("yes"),               // equilibrium
+    takes("slopes at rest"),    // modes
+    refuses(balance_or_march),  // periodic
+    takes("by samples"),        // harmonic_balance
+    takes("yes"),               // time_marching
+    refuses(balanced_sweep),    // damper_curve
+    refuses(),                  // method_study
+};
+constexpr Row joint_friction{
+    takes("yes"),          // steps
+    refuses(small_steps),  // exact
+    takes("yes"),          // equilibrium
+    takes("stuck, free"),  // modes
+    refuses(transient),    // periodic
+    refuses(transient),    // harmonic_balance
+    refuses(transient),    // time_marching
+    refuses(transient),    // damper_curve
+    refuses(),             // method_study
+};
+constexpr Row lock{
+    takes("yes"),          // steps
+    refuses(small_steps),  // exact
+    takes("as it is"),     // equilibrium
+    takes("as it is"),     // modes
+    refuses(transient),    // periodic
+    refuses(transient),    // harmonic_balance
+    refuses(transient),    // time_marching
+    refuses(transient),    // damper_curve
+    refuses(),             // method_study
+};
+// In the order of Element.
+constexpr std::array<Row, element_count> table{slider, stop, law, joint_friction, lock};
 
 /// The first element of a structure that a route refuses, as messages call it.
 struct Refused {
@@ -84,12 +102,12 @@ struct Refused {
   std::string name;
 };
 std::optional<Refused> refused_by(Route route, const system::LocallyNonlinear& system) {
-  const auto refuses = [&](Element element) { return *handling(element, route).how == '\0'; };
-  if (system.slider_count() > 0 && refuses(Element::slider))
+  const auto is_refused = [&](Element element) { return *handling(element, route).how == '\0'; };
+  if (system.slider_count() > 0 && is_refused(Element::slider))
     return Refused{Element::slider, fmt::format("{} slider(s)", system.slider_count())};
-  if (system.stop_count() > 0 && refuses(Element::stop))
+  if (system.stop_count() > 0 && is_refused(Element::stop))
     return Refused{Element::stop, fmt::format("the stop \"{}\"", system.stops().front().name)};
-  if (system.law_count() > 0 && refuses(Element::law))
+  if (system.law_count() > 0 && is_refused(Element::law))
     return Refused{Element::law, fmt::format("the {} \"{}\"", system.laws().front().kind, system.laws().front().name)};
   return std::nullopt;
 }
