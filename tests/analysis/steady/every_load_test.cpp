@@ -1,15 +1,11 @@
-#include <rubato/analysis/run_study.hpp>
 #include <rubato/core/error.hpp>
 
-#include "support/memory_sink.hpp"
-#include "support/prepared_study.hpp"
+#include "support/steady_study.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -23,24 +19,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-testing::MemorySink run(const std::string& text) {
-  const testing::PreparedStudy prepared(text);
-  testing::MemorySink sink;
-  testing::QuietProgress progress;
-  const std::atomic<bool> stop{false};
-  RunContext context{sink, progress, stop};
-  for (const auto& analysis : prepared.study.analyses) {
-    (void)check_analysis(analysis, prepared.input());
-    EXPECT_EQ(run_analysis(analysis, prepared.input(), context).status, RunStatus::done);
-  }
-  return sink;
-}
-
-double value_of(const testing::MemorySink& sink, const std::string& table, const std::string& variable,
-                const std::string& label = "", std::size_t row = 0) {
-  const auto& found = sink.tables.at(table);
-  return found.rows.at(row).at(found.column(variable, label));
-}
+using testing::marched;
+using testing::response;
+using testing::run_study;
+using testing::settled;
+using testing::Swing;
+using testing::value_of;
 
 struct Structure {
   std::string name, text, slider;            ///< damped so that 30 periods forget the start
@@ -187,43 +171,14 @@ normal_load = "N0"
            "[base_motion]\nof = \"velocity\"\ndirection = { b = 1.0 }\n" + harmonic("1.0")}};
 }
 
-const std::string marched = R"(
-[[analysis]]
-name = "march"
-type = "transient"
-step = "2*pi/Omega/400"
-duration = "60*pi/Omega"
-)";
-
-std::string response(const std::string& name, const std::string& rest) {
-  return "[[analysis]]\nname = \"" + name + "\"\ntype = \"frequency_response\"\nangular_frequency = [3.0]\n" + rest;
-}
-
-struct Swing {
-  double amplitude, mean;
-};
-
-/// Of the last period of a transient whose steps divide it by 400.
-Swing settled(const testing::MemorySink& sink, const std::string& observed) {
-  const auto& table = sink.tables.at("march");
-  const std::size_t column = table.column("position", observed), last = table.rows.size() - 1;
-  double low = HUGE_VAL, high = -HUGE_VAL, sum = 0.0;
-  for (std::size_t i = last - 399; i <= last; ++i) {
-    low = std::min(low, table.rows[i][column]);
-    high = std::max(high, table.rows[i][column]);
-    sum += table.rows[i][column];
-  }
-  return {0.5 * (high - low), sum / 400.0};
-}
-
 // Steps of a 400th of the period err by (2 pi/400)^2/12 of the amplitude, 2e-5, and by the turning points that the
 // return map misses within a step, of 1/400 of a period: less than 0.2 %. Harmonic balance and marching are asked for
 // 0.1 %.
 void expect_the_settled_transient(const Structure& structure, const std::string& load, bool with_slider) {
   SCOPED_TRACE(structure.name + (with_slider ? ", with a slider:\n" : ", linear:\n") + load);
-  const auto sink = run(parameters + structure.text + (with_slider ? structure.slider : "") + load + marched +
-                        response("periodic", "") + response("balance", "solver = \"harmonic_balance\"\n") +
-                        response("marching", "solver = \"time_marching\"\n"));
+  const auto sink = run_study(parameters + structure.text + (with_slider ? structure.slider : "") + load + marched +
+                              response("periodic", "") + response("balance", "solver = \"harmonic_balance\"\n") +
+                              response("marching", "solver = \"time_marching\"\n"));
   for (const std::string& observed : structure.observed) {
     const Swing swing = settled(sink, observed);
     const double scale = swing.amplitude + std::abs(swing.mean);
@@ -266,13 +221,14 @@ TEST_P(EveryLoad, GivesTheDamperCurveThePeakOfTheResponse) {
     SCOPED_TRACE(load);
     const std::string text = parameters + structure().text + structure().slider + load;
     const std::string observe = "observe = [\"" + structure().observed[1] + "\"]\n";
-    const auto curve = run(text + "[[analysis]]\nname = \"curve\"\ntype = \"damper_curve\"\nparameter = \"N0\"\n" +
-                           "range = [1.0, 1.5]\nangular_frequency = { from = 2.9, to = 3.1, points = 3 }\n" +
-                           "optimum = false\n" + observe);
+    const auto curve =
+        run_study(text + "[[analysis]]\nname = \"curve\"\ntype = \"damper_curve\"\nparameter = \"N0\"\n" +
+                  "range = [1.0, 1.5]\nangular_frequency = { from = 2.9, to = 3.1, points = 3 }\n" +
+                  "optimum = false\n" + observe);
     const double at = value_of(curve, "curve", "angular_frequency"), peak = value_of(curve, "curve", "objective");
     EXPECT_GT(peak, 0.0);
-    const auto sink = run(text + "[[analysis]]\nname = \"peak\"\ntype = \"frequency_response\"\n" + observe +
-                          "angular_frequency = [" + fmt::format("{:.17g}", at) + "]\n");
+    const auto sink = run_study(text + "[[analysis]]\nname = \"peak\"\ntype = \"frequency_response\"\n" + observe +
+                                "angular_frequency = [" + fmt::format("{:.17g}", at) + "]\n");
     EXPECT_NEAR(value_of(sink, "peak", "amplitude", structure().observed[1]), peak, 1e-9 * peak);
   }
 }
@@ -289,8 +245,8 @@ TEST(StaticLoad, IsTheMeanOfALinearResponse) {
         "[[distributed_force]]\non = \"arm\"\nexpression = \"4\"\ndirection = " + down +
         "[[force]]\non = \"tip.y\"\nexpression = \"-2\"\n[base_motion]\ndirection = { y = 1.0 }\n" +
         harmonic("3.0", "phase = \"-pi/2\"\n");
-    const auto sink = run(parameters + structure.text + loads + response("response", "") +
-                          "[[analysis]]\nname = \"rest\"\ntype = \"static\"\n");
+    const auto sink = run_study(parameters + structure.text + loads + response("response", "") +
+                                "[[analysis]]\nname = \"rest\"\ntype = \"static\"\n");
     for (const std::string& observed : structure.observed) {
       const double mean = value_of(sink, "response", "mean", observed);
       EXPECT_GT(std::abs(mean), 1e-6);
@@ -368,57 +324,14 @@ TEST(MotionOfTheGround, IsItsEquivalentForceOnTheNodesInEverySteadyResponse) {
   const auto force = [](const std::string& on, const std::string& amplitude) {
     return "[[force]]\non = \"" + on + "\"\namplitude = \"" + amplitude + "\"\nangular_frequency = \"Omega\"\n";
   };
-  const auto ground = run(swinging_ground + "[base_motion]\namplitude = \"a0\"\nangular_frequency = \"Omega\"\n" +
-                          "direction = { x = 1.0, y = 0.5 }\n" + two_analyses);
-  const auto forces = run(swinging_ground + force("n.x", "-2.5*a0") + force("n.y", "-1.25*a0") + two_analyses);
+  const auto ground = run_study(swinging_ground + "[base_motion]\namplitude = \"a0\"\nangular_frequency = \"Omega\"\n" +
+                                "direction = { x = 1.0, y = 0.5 }\n" + two_analyses);
+  const auto forces = run_study(swinging_ground + force("n.x", "-2.5*a0") + force("n.y", "-1.25*a0") + two_analyses);
   expect_the_same(ground, forces);
-  const auto displaced = run(swinging_ground + "[base_motion]\nof = \"displacement\"\namplitude = \"-a0/Omega^2\"\n" +
-                             "angular_frequency = \"Omega\"\ndirection = { x = 1.0, y = 0.5 }\n" + two_analyses);
+  const auto displaced =
+      run_study(swinging_ground + "[base_motion]\nof = \"displacement\"\namplitude = \"-a0/Omega^2\"\n" +
+                "angular_frequency = \"Omega\"\ndirection = { x = 1.0, y = 0.5 }\n" + two_analyses);
   expect_the_same(displaced, forces);
-}
-
-// x = z + q with z the motion of the point that is moved: q is what the ground's motion makes, and z adds k z + c z'.
-TEST(CoordinateThatMoves, DrivesASteadyResponseAsASpringAndADashpotOnMovingGroundDo) {
-  const std::string mass = R"(
-[parameters]
-Omega = 3.0
-N0 = 1.0
-[[coordinate]]
-name = "base"
-mass = 5.0
-[[coordinate]]
-name = "top"
-mass = 2.0
-[[spring]]
-between = ["base", "top"]
-stiffness = 30.0
-[[damper]]
-between = ["base", "top"]
-damping = 0.8
-[[slider]]
-name = "rub"
-between = ["top", "ground"]
-stiffness = 20.0
-friction_coefficient = 0.4
-normal_load = "N0"
-)";
-  const std::string analyses = response("periodic", "observe = [\"top\"]\n") +
-                               response("balance", "observe = [\"top\"]\nsolver = \"harmonic_balance\"\n") +
-                               response("marching", "observe = [\"top\"]\nsolver = \"time_marching\"\n");
-  const auto moved = run(mass + "[[displacement]]\non = \"base\"\namplitude = 0.2\nangular_frequency = \"Omega\"\n" +
-                         "[[force]]\non = \"base\"\nexpression = \"7.0\"\n" + marched + analyses);
-  std::string fixed = mass;
-  for (const char* joined : {"between = [\"base\", \"top\"]", "between = [\"base\", \"top\"]"})
-    fixed.replace(fixed.find(joined), 25, "between = [\"top\", \"ground\"]");
-  const std::string top = "[[force]]\non = \"top\"\nangular_frequency = \"Omega\"\n";
-  const auto pushed =
-      run(fixed + top + "amplitude = 6.0\n" + top + "amplitude = \"0.16*Omega\"\nphase = \"pi/2\"\n" + analyses);
-  const double amplitude = value_of(pushed, "periodic", "amplitude", "top");
-  EXPECT_NEAR(value_of(moved, "periodic", "amplitude", "top"), amplitude, 1e-9 * amplitude);
-  EXPECT_NEAR(value_of(moved, "balance", "amplitude", "top"), value_of(pushed, "balance", "amplitude", "top"),
-              1e-9 * amplitude);
-  EXPECT_NEAR(value_of(moved, "marching", "amplitude", "top"), amplitude, 2e-3 * amplitude);
-  EXPECT_NEAR(settled(moved, "top").amplitude, amplitude, 4e-3 * amplitude);
 }
 
 // Whatever a load is made of may follow a swept parameter, or the frequency itself.
@@ -455,7 +368,7 @@ fix = ["x", "y", "rz"]
     SCOPED_TRACE(name);
     const std::string wide = study("", 0.0) + "sweep = { " + name + " = [" + std::to_string(given) + ", " +
                              std::to_string(1.7 * given) + "] }\n";
-    const auto swept = run(wide), apart = run(study(name, 1.7 * given)), first = run(study("", 0.0));
+    const auto swept = run_study(wide), apart = run_study(study(name, 1.7 * given)), first = run_study(study("", 0.0));
     for (const char* variable : {"amplitude", "mean"})
       for (std::size_t row = 0; row < 2; ++row) {
         const double wanted = value_of(apart, "response", variable, "tip.y", row);
@@ -473,7 +386,7 @@ fix = ["x", "y", "rz"]
 
 std::string refusal(const std::string& text) {
   try {
-    (void)run(text);
+    (void)run_study(text);
   } catch (const InvalidInput& fault) {
     return fault.message();
   }
@@ -529,7 +442,7 @@ methods = ["generalized_alpha"]
 step = 0.01
 duration = 1.0
 )";
-  const auto sink = run(mass);
+  const auto sink = run_study(mass);
   for (std::size_t i = 0; i <= 4; ++i) {
     const double t = 0.5 * static_cast<double>(i);
     EXPECT_NEAR(value_of(sink, "exact", "position", "a", i), 3.0 / 18.0 * (1.0 - std::cos(3.0 * t)), 1e-12);

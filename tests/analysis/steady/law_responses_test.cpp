@@ -1,14 +1,11 @@
+#include <rubato/analysis/law_routes.hpp>
+#include <rubato/analysis/steady/frequency_response_plan.hpp>
+#include <rubato/core/error.hpp>
+
+#include "support/ran_study.hpp"
+
 #include <gtest/gtest.h>
 
-#include "support/memory_sink.hpp"
-#include "support/prepared_study.hpp"
-
-#include <rubato/analysis/law_routes.hpp>
-#include <rubato/analysis/steady/damper_curve_plan.hpp>
-#include <rubato/analysis/steady/frequency_response.hpp>
-#include <rubato/analysis/steady/frequency_response_plan.hpp>
-
-#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -55,23 +52,6 @@ stiffness = 1.0
 post_yield_ratio = 0.1
 )";
 
-const std::atomic<bool> never{false};
-
-/// The rows of a study's first analysis.
-struct Rows {
-  explicit Rows(const PreparedStudy& prepared) : plan(plan_of(prepared)) {
-    QuietProgress progress;
-    RunContext context{sink, progress, never, 1, nullptr};
-    run_frequency_response("frf", plan, prepared.input(), steady_solvers(plan.route), context);
-  }
-  double at(const std::string& table, std::size_t row, const std::string& variable, const std::string& label) const {
-    const auto& rows = sink.tables.at(table);
-    return rows.rows.at(row).at(rows.column(variable, label));
-  }
-  FrequencyResponsePlan plan;
-  MemorySink sink;
-};
-
 std::string message_of(const PreparedStudy& prepared) {
   try {
     (void)plan_of(prepared);
@@ -82,18 +62,18 @@ std::string message_of(const PreparedStudy& prepared) {
 }
 
 TEST(LawResponses, AreBalancedWhereNoSolverIsNamed) {
-  const PreparedStudy prepared(study(foot, R"(
+  const std::string text = study(foot, R"(
 type = "frequency_response"
 angular_frequency = [0.7, 0.85, 1.0]
-)"));
-  const Rows run(prepared);
-  EXPECT_EQ(run.plan.route.kind, SteadyRoute::Kind::harmonic_balance);
+)");
+  EXPECT_EQ(plan_of(PreparedStudy(text)).route.kind, SteadyRoute::Kind::harmonic_balance);
+  const MemorySink run = run_study(text);
   // friction-family reference, section 9, n = 1; the route promises 1e-3.
   const double amplitudes[] = {0.847936441856, 1.3257405138, 0.991463047334},
                works[] = {0.33720943227, 1.12861316178, 0.521487967447};
   for (std::size_t row = 0; row < 3; ++row) {
-    EXPECT_NEAR(run.at("frf", row, "amplitude", "mass"), amplitudes[row], 1e-3 * amplitudes[row]);
-    EXPECT_NEAR(run.at("frf", row, "dissipated", "foot"), works[row], 5e-3 * works[row]);
+    EXPECT_NEAR(value_of(run, "frf", "amplitude", "mass", row), amplitudes[row], 1e-3 * amplitudes[row]);
+    EXPECT_NEAR(value_of(run, "frf", "dissipated", "foot", row), works[row], 5e-3 * works[row]);
   }
 }
 
@@ -127,15 +107,14 @@ solver = "time_marching"
 }
 
 TEST(LawResponses, HaveTheSlopesOfTheLawsAtRestInTheirLinearLimits) {
-  const PreparedStudy prepared(study(foot, R"(
+  const MemorySink run = run_study(study(foot, R"(
 type = "frequency_response"
 angular_frequency = [0.5, 2.0]
 )"));
-  const Rows run(prepared);
   for (const auto& [row, w] : {std::pair<std::size_t, double>{0, 0.5}, {1, 2.0}}) {
     const double expected = 0.3 / std::hypot(1.0 - w * w, 0.02 * w);  // k = 1 in both limits: there are no sliders
-    EXPECT_NEAR(run.at("frf.linear", row, "free_amplitude", "mass"), expected, 1e-9);
-    EXPECT_NEAR(run.at("frf.linear", row, "stuck_amplitude", "mass"), expected, 1e-9);
+    EXPECT_NEAR(value_of(run, "frf.linear", "free_amplitude", "mass", row), expected, 1e-9);
+    EXPECT_NEAR(value_of(run, "frf.linear", "stuck_amplitude", "mass", row), expected, 1e-9);
   }
 }
 
