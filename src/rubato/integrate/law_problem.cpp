@@ -1,4 +1,5 @@
 #include <rubato/integrate/law_problem.hpp>
+#include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +9,46 @@ namespace rubato::integrate {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr int most_iterations = 60;
+constexpr double enough = 16.0;  // of round-off
 
 }  // namespace
+
+/// The laws taken as linear rows of the complementarity problem; along the way to its solution sliders and stops stay
+/// exact.
+struct LawProblem::Iteration : numerics::NewtonProblem {
+  Iteration(LawProblem& problem, const system::State& from, system::State& to) : p(problem), from(from), to(to) {}
+
+  static constexpr numerics::NewtonRules rules() {
+    numerics::NewtonRules rules;
+    rules.most_iterations = 60;
+    rules.most_halvings = 20;
+    return rules;
+  }
+  double evaluate(bool) { return boxes_hold ? p.evaluate(p.trial_force_, to) : HUGE_VAL; }
+  bool is_solved(double error) const { return error <= enough; }
+  bool factorise() {
+    p.linearise();
+    return p.linearised_.solve(p.trial_.data(), from.slider_force.data(), p.next_.data(), p.penetration_.data());
+  }
+  double correct() {
+    p.next_ -= p.force_;
+    return 1.0;  // the residual alone decides
+  }
+  void move(double part) {
+    p.trial_force_ = p.force_ + part * p.next_;
+    if (part > 0.0 && part < 1.0) boxes_hold = p.solve_boxes(from, p.trial_force_);
+  }
+  bool is_lower(double error, double before, double part) const {
+    return error < before * (1.0 - 1e-4 * part) || error <= enough;
+  }
+  bool may_be_halved(double) const { return boxes_hold; }
+  void accept(double) { p.force_.swap(p.trial_force_); }
+
+  LawProblem& p;
+  const system::State& from;
+  system::State& to;
+  bool boxes_hold = true;
+};
 
 LawProblem::LawProblem(const system::LocallyNonlinear& system)
     : system_(system),
@@ -24,6 +62,7 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
       box_penetration_(boxes_),
       force_(m_),
       next_(m_),
+      trial_force_(m_),
       u_(m_),
       v_(m_),
       start_(static_cast<std::size_t>(system.law_count())),
@@ -103,9 +142,16 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
   return largest;
 }
 
-StepReport LawProblem::solve(const system::State& from, system::State& to) {
-  constexpr double enough = 16.0;  // of round-off
-  constexpr double good = 1e6;     // a correction that no longer helps leaves at most 1e-10 of the forces
+void LawProblem::linearise() {
+  for (std::size_t j = 0; j < answer_.size(); ++j) {
+    const Index i = boxes_ + static_cast<Index>(j);
+    const model::LawAnswer& a = answer_[j];
+    linearised_.set_slopes(i, a.by_u, a.by_rate);
+    trial_[i] = a.force + a.by_u * (u_free_[i] - u_[i]) + a.by_rate * (v_free_[i] - v_[i]);
+  }
+}
+
+void LawProblem::start(const system::State& from, const system::State& to) {
   set_box_trials(from);
   memory_ = from.memory.data();
   for (std::size_t j = 0; j < start_.size(); ++j) {
@@ -119,39 +165,20 @@ StepReport LawProblem::solve(const system::State& from, system::State& to) {
       if (end != ground) reach_[j] = std::max(reach_[j], std::abs(from.q[end]));
   }
   force_ = from.slider_force;
+}
+
+StepReport LawProblem::solve(const system::State& from, system::State& to) {
+  constexpr double good = 1e6;  // a correction that no longer helps leaves at most 1e-10 of the forces
+  start(from, to);
   if (!solve_boxes(from, force_)) return failure(StepOutcome::not_converged);
-  double error = evaluate(force_, to);
-  for (int iteration = 0; error > enough; ++iteration) {
-    if (!std::isfinite(error)) return failure(StepOutcome::not_finite);
-    if (iteration == most_iterations) return failure(StepOutcome::not_converged);
-    for (std::size_t j = 0; j < answer_.size(); ++j) {
-      const Index i = boxes_ + static_cast<Index>(j);
-      const model::LawAnswer& a = answer_[j];
-      linearised_.set_slopes(i, a.by_u, a.by_rate);
-      trial_[i] = a.force + a.by_u * (u_free_[i] - u_[i]) + a.by_rate * (v_free_[i] - v_[i]);
-    }
-    if (!linearised_.solve(trial_.data(), from.slider_force.data(), next_.data(), penetration_.data()))
-      return failure(StepOutcome::not_converged);
-    // Along the way to the solution of the linear equations, sliders and stops staying exact.
-    const double before = error;
-    double share = 1.0;
-    next_ -= force_;  // the correction
-    for (;; share *= 0.5) {
-      trial_force_ = force_ + share * next_;
-      if (share < 1.0 && !solve_boxes(from, trial_force_)) return failure(StepOutcome::not_converged);
-      error = evaluate(trial_force_, to);
-      if (error < before * (1.0 - 1e-4 * share) || error <= enough) break;
-      if (share < 1e-6) {
-        if (before > good || !std::isfinite(error)) return failure(StepOutcome::not_converged);
-        trial_force_ = force_;  // as good as it gets
-        error = evaluate(force_, to);
-        break;
-      }
-    }
-    const bool is_better = error < before;
-    force_ = trial_force_;
-    if (!is_better) break;
-  }
+  trial_force_ = force_;
+  Iteration iteration(*this, from, to);
+  const numerics::NewtonReport report = numerics::newton(iteration, Iteration::rules());
+  if (report.outcome == numerics::NewtonOutcome::diverged && iteration.boxes_hold && report.residual <= good)
+    evaluate(force_, to);  // as good as it gets
+  else if (!report.has_converged())
+    return failure(report.outcome == numerics::NewtonOutcome::not_finite ? StepOutcome::not_finite
+                                                                         : StepOutcome::not_converged);
   // The forces that the laws have at the end are those that the step took.
   to.slider_force = force_;
   return {};

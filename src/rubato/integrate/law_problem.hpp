@@ -32,6 +32,10 @@ class LawProblem {
   StepReport solve(const system::State& from, system::State& to);
 
  private:
+  struct Iteration;
+
+  void start(const system::State& from, const system::State& to);
+  void linearise();
   bool solve_boxes(const system::State& from, Vector& force);
   void set_box_trials(const system::State& from);
   double evaluate(const Vector& force, system::State& to);
