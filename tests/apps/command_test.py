@@ -18,8 +18,8 @@ class Command(CommandCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, "out/report.html\n")
         names = {entry.name for entry in (self.folder / "out").iterdir()}
-        self.assertEqual(names, {"results.nc", "report.html", "response.csv", "response.energy.csv", "exact.csv",
-                                 "exact.energy.csv", *(f"{name}.csv" for name in (
+        self.assertEqual(names, {"results.nc", "report.html", "response.csv", "response.energy.csv",
+                                 "response.events.csv", "exact.csv", "exact.energy.csv", "exact.events.csv", *(f"{name}.csv" for name in (
                                      "frf", "frf.linear", "frf.waveforms", "marched", "marched.linear", "damper",
                                      "damper.linear", "damper.peaks", "damper.optimum"))})
         header = self.rows("out/response.csv")[0]
@@ -126,9 +126,10 @@ class Command(CommandCase):
         again = self.run_command("run", "-o", "twice", study, "--only", "exact")
         self.assertEqual(again.returncode, 0)
         self.assertIn("tables of a former run, which these results do not have, were moved to twice/former: response.csv, "
-                      "response.energy.csv\n", again.stderr)
+                      "response.energy.csv, response.events.csv\n", again.stderr)
         self.assertEqual({entry.name for entry in (self.folder / "twice").iterdir()},
-                         {"former", "notes.csv", "results.nc", "report.html", "exact.csv", "exact.energy.csv"})
+                         {"former", "notes.csv", "results.nc", "report.html", "exact.csv", "exact.energy.csv",
+                          "exact.events.csv"})
         self.assertEqual((self.folder / "twice/former/response.csv").read_bytes(), response)
         self.assertNotIn("former", self.run_command("run", "-o", "twice", study, "--only", "exact").stderr)
 

@@ -1,6 +1,8 @@
+#include <rubato/analysis/events_table.hpp>
 #include <rubato/analysis/exact_transient.hpp>
 #include <rubato/analysis/transient_recorder.hpp>
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/contact_events.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/structure_balance.hpp>
 #include <rubato/integrate/structure_energy.hpp>
@@ -45,8 +47,9 @@ class ExactEnergy final : public integrate::EnergyPart {
 class ExactRecorder final : public integrate::ExactVisitor {
  public:
   ExactRecorder(const TransientPlan& plan, TransientRecorder& recorder, ExactEnergy& energy,
-                integrate::EnergyLedger& ledger, RunContext& context)
+                integrate::EnergyLedger& ledger, const system::LocallyNonlinear& system, RunContext& context)
       : start_(plan.start),
+        contacts_(system, plan.start),
         recorder_(recorder),
         energy_(energy),
         ledger_(ledger),
@@ -59,12 +62,15 @@ class ExactRecorder final : public integrate::ExactVisitor {
     record(state, work);
     return !context_.stop.load(std::memory_order_relaxed);
   }
-  bool transition(const system::State& state, const integrate::Transition&, const integrate::ExactWork& work) override {
+  bool transition(const system::State& state, const integrate::Transition& transition,
+                  const integrate::ExactWork& work) override {
+    contacts_.note_slider(transition.t, transition.slider, transition.state == integrate::SliderState::stick);
     if (with_transitions_ && state.t != last_) record(state, work);
     return !context_.stop.load(std::memory_order_relaxed);
   }
   /// Sums of work begin anew with each advance: books those of the last row.
   void keep() { ledger_.add_step(start_, start_); }
+  const integrate::Events& events() const { return contacts_.events(); }
 
  private:
   void record(const system::State& state, const integrate::ExactWork& work) {
@@ -74,6 +80,7 @@ class ExactRecorder final : public integrate::ExactVisitor {
   }
 
   const system::State& start_;
+  integrate::ContactEvents contacts_;
   TransientRecorder& recorder_;
   ExactEnergy& energy_;
   integrate::EnergyLedger& ledger_;
@@ -110,7 +117,7 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
   integrate::EnergyLedger ledger(std::move(parts));
   TransientRecorder recorder(name, plan, results::columns_of_motion(system, plan.observed), balance,
                              plan.energy ? &ledger : nullptr, context.sink);
-  ExactRecorder visitor(plan, recorder, energy, ledger, context);
+  ExactRecorder visitor(plan, recorder, energy, ledger, system, context);
   const double interval = plan.output == Kind::interval ? plan.interval : default_interval(system);
   const double round_off = 1e-12 * plan.duration;
   system::State state = plan.start;
@@ -165,6 +172,8 @@ RunReport run_exact_transient(const std::string& name, const TransientPlan& plan
     if (run.status != RunStatus::done || report.end == integrate::ExactEnd::stopped) break;
   }
   context.progress.end();
+  write_events(name, visitor.events(), context.sink);
+  if (const std::string warning = warning_of(visitor.events()); !warning.empty()) run.warnings.push_back(warning);
   run.statistics = {{"transitions", std::to_string(transitions)}, {"rows", std::to_string(recorder.rows())}};
   return run;
 }

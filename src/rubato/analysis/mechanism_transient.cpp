@@ -1,6 +1,6 @@
 #include <rubato/analysis/equilibrium_text.hpp>
+#include <rubato/analysis/events_table.hpp>
 #include <rubato/analysis/load_checks.hpp>
-#include <rubato/analysis/mechanism_events.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/constrained/constrained_balance.hpp>
@@ -9,6 +9,7 @@
 #include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
+#include <rubato/integrate/mechanism/mechanism_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
 #include <rubato/results/columns/beam_section_forces.hpp>
@@ -150,9 +151,11 @@ class MechanismMarch final : public TransientMarch {
     return integrate::failure_of(report, mechanism_, state_, {timeline_.chattering(), timeline_.events()});
   }
 
-  void conclude(const std::string& name, const integrate::AdaptiveReport& report, results::Sink& sink,
-                RunReport& run) const override {
-    write_events(name, plan_.start, timeline_.events(), mechanism_, sink);
+  integrate::Events events() const override {
+    return integrate::events_of(timeline_.events(), mechanism_, &plan_.start);
+  }
+
+  void conclude(const integrate::AdaptiveReport& report, RunReport& run) const override {
     run.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", watch_.largest_drift()));
     const std::string small =
         warning_of_small_motion(watch_.largest_way(), estimator_->size(), *plan_.automatic, mechanism_);
@@ -166,7 +169,7 @@ class MechanismMarch final : public TransientMarch {
     // The share of the run that the tolerance is; of equal steps, which are judged by nothing, a tenth of a step.
     const double known =
         has_equal_steps(plan_) ? 0.1 * plan_.automatic->plan.first : plan_.automatic->tolerance * plan_.duration;
-    report_events(timeline_.events(), mechanism_, known, run.findings);
+    report_events(events(), known, run.findings);
   }
 
  private:

@@ -2,6 +2,7 @@
 #include <rubato/analysis/load_checks.hpp>
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/structure_transient.hpp>
+#include <rubato/integrate/contact_events.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/integrate/load_jumps.hpp>
@@ -52,8 +53,11 @@ class StructureMarch final : public TransientMarch {
       : plan_(plan),
         system_(system),
         stepper_(integrate::make_stepper(plan.method, system)),
+        timeline_(system, integrate::relative_resolution * (plan.duration - plan.start.t),
+                  !plan.automatic || plan.automatic->plan.locate_sliders),
         balance_(system),
-        state_(integrate::consistent_start(system, plan.start)) {
+        state_(integrate::consistent_start(system, plan.start)),
+        contacts_(system, state_, plan.automatic && plan.automatic->plan.locate_events ? &timeline_ : nullptr) {
     if (!plan.automatic)
       jumps_.emplace(system, plan.start.t, plan.duration);
     else
@@ -67,6 +71,7 @@ class StructureMarch final : public TransientMarch {
     return integrate::energy_parts(system_, balance_);
   }
   results::ColumnGroups columns() override { return results::columns_of_motion(system_, plan_.observed); }
+  integrate::Observer* listener() override { return contacts_.events().parts.empty() ? nullptr : &contacts_; }
   long steps_a_report() const override { return system_.size() > 1000 ? 1 : 256; }
 
   integrate::StepReport start_fault() const override {
@@ -79,7 +84,7 @@ class StructureMarch final : public TransientMarch {
 
   integrate::AdaptiveReport go_to(double end, integrate::Observer* observer, integrate::TryLog* log) override {
     if (estimator_)
-      return integrate::march(*stepper_, *estimator_, plan_.automatic->plan, system_, state_, end, observer, log);
+      return integrate::march(*stepper_, *estimator_, plan_.automatic->plan, timeline_, state_, end, observer, log);
     integrate::AdaptiveReport report;
     report.march = integrate::march(*stepper_, state_, plan_.step, end, observer, &*jumps_);
     report.factorisations = stepper_->factorisations();
@@ -90,7 +95,9 @@ class StructureMarch final : public TransientMarch {
     return integrate::failure_of(report, system_);
   }
 
-  void conclude(const std::string&, const integrate::AdaptiveReport&, results::Sink&, RunReport& run) const override {
+  integrate::Events events() const override { return contacts_.events(); }
+
+  void conclude(const integrate::AdaptiveReport&, RunReport& run) const override {
     if (jumps_ && jumps_->missed() > 0) run.warnings.push_back(missed_jumps(*jumps_));
   }
 
@@ -99,9 +106,11 @@ class StructureMarch final : public TransientMarch {
   const system::LocallyNonlinear& system_;
   std::unique_ptr<integrate::Stepper> stepper_;
   std::unique_ptr<integrate::Estimator> estimator_;  // null: steps are equal
+  integrate::StructureTimeline timeline_;            // of steps that choose themselves
   integrate::StructureBalance balance_;
   std::optional<integrate::LoadJumps> jumps_;  // that equal steps miss
   system::State state_;
+  integrate::ContactEvents contacts_;
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <rubato/analysis/events_table.hpp>
 #include <rubato/analysis/failure_text.hpp>
 #include <rubato/analysis/transient_kind.hpp>
 #include <rubato/analysis/transient_observer.hpp>
@@ -65,7 +66,12 @@ RunReport TransientKind::run(const std::string& name, const TransientPlan& plan,
   if (has_begun && plan.automatic)
     if (const std::string warning = warning_of(report, *plan.automatic); !warning.empty())
       run.warnings.push_back(warning);
-  march->conclude(name, report, context.sink, run);
+  if (has_begun) {
+    const integrate::Events events = march->events();
+    write_events(name, events, context.sink);
+    if (const std::string warning = warning_of(events); !warning.empty()) run.warnings.push_back(warning);
+  }
+  march->conclude(report, run);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;
     const integrate::MarchFailure failure = march->failure(report.march);

@@ -6,6 +6,7 @@
 #include <rubato/integrate/balance.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/energy_ledger.hpp>
+#include <rubato/integrate/events.hpp>
 #include <rubato/integrate/march_failure.hpp>
 #include <rubato/results/columns/column_group.hpp>
 #include <rubato/system/system.hpp>
@@ -39,9 +40,10 @@ class TransientMarch {
   virtual integrate::AdaptiveReport go_to(double end, integrate::Observer* observer, integrate::TryLog* log) = 0;
   /// Why it ended before its time.
   virtual integrate::MarchFailure failure(const integrate::MarchReport& report) const = 0;
-  /// Tells what else there is of a march that ended: in the report, and in tables of its own.
-  virtual void conclude(const std::string& name, const integrate::AdaptiveReport& report, results::Sink& sink,
-                        RunReport& run) const = 0;
+  /// What its parts did so far.
+  virtual integrate::Events events() const = 0;
+  /// Tells what else there is of a march that ended.
+  virtual void conclude(const integrate::AdaptiveReport& report, RunReport& run) const = 0;
 };
 
 /// What transients of one kind of system have of their own. plan_transient() and run() do the rest.

@@ -380,8 +380,7 @@ AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& pla
 AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan,
                      const system::LocallyNonlinear& system, system::State& state, double end, Observer* observer,
                      TryLog* log) {
-  constexpr double resolution = 1e-12;
-  StructureTimeline timeline(system, resolution * (end - state.t), plan.locate_sliders);
+  StructureTimeline timeline(system, relative_resolution * (end - state.t), plan.locate_sliders);
   return march(stepper, estimator, plan, timeline, state, end, observer, log);
 }
 

@@ -76,7 +76,10 @@ struct AdaptiveReport {
 AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan, Timeline& timeline,
                      system::State& state, double end, Observer* observer = nullptr, TryLog* log = nullptr);
 
-/// The same with the timeline of a structure, which locates to 1e-12 of the march.
+/// To what events of a structure are located, over the length of a march [-].
+inline constexpr double relative_resolution = 1e-12;
+
+/// The same with the timeline of a structure.
 AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan,
                      const system::LocallyNonlinear& system, system::State& state, double end,
                      Observer* observer = nullptr, TryLog* log = nullptr);

@@ -7,8 +7,9 @@
 
 namespace rubato::integrate {
 
-/// What a part of a system can do in a march: a lock that lets go or locks, friction that slips or sticks.
-enum class Change { lets_go, locks, slips, sticks };
+/// What a part of a system can do in a march: a lock that lets go or locks, friction that slips or sticks, a stop of a
+/// structure that opens or closes.
+enum class Change { lets_go, locks, slips, sticks, opens, closes };
 
 struct Event {
   double t = 0.0;        ///< [s]
@@ -17,10 +18,23 @@ struct Event {
   double energy_lost = 0.0;  ///< to an impact, or held by a spring as it let go [J]
 };
 
-/// What parts did in a march, in the order of time.
+/// What parts did in a march, in the order of time: the first hundred thousand changes, so that long runs fill neither
+/// memory nor disks.
 struct Events {
+  static constexpr std::size_t most = 100'000;
+
   std::vector<std::string> parts;  ///< names of all that can change
+  bool are_of_contacts = false;    ///< sliders and stops of a structure, else of joints
   std::vector<Event> all;
+  std::size_t at_start = 0;  ///< the first so many tell how the march begins: nothing changed then
+  long left_out = 0;         ///< further changes, which are counted only
+
+  void add(const Event& event) {
+    if (all.size() < most)
+      all.push_back(event);
+    else
+      ++left_out;
+  }
 };
 
 /// "locks", for messages.
@@ -34,6 +48,10 @@ inline const char* name_of(Change change) {
       return "slips";
     case Change::sticks:
       return "sticks";
+    case Change::opens:
+      return "opens";
+    case Change::closes:
+      return "closes";
   }
   return "";
 }

@@ -130,6 +130,16 @@ StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system
   return watches_sliders_ ? watch_of_slider(contact, from) : Watch::nothing;
 }
 
+int StructureTimeline::branch(Index contact, const system::State& state) const {
+  if (contact >= system_.slider_count()) return watch_of_stop(contact, state) == Watch::opening ? 1 : 0;
+  if (watches_sliders_) {
+    const Watch watch = watch_of_slider(contact, state);
+    return watch == Watch::rest_after_positive ? 1 : watch == Watch::rest_after_negative ? -1 : 0;
+  }
+  const double force = state.slider_force[contact], limit = system_.sliders()[static_cast<std::size_t>(contact)].limit;
+  return force >= limit ? 1 : force <= -limit ? -1 : 0;
+}
+
 StructureTimeline::Watch StructureTimeline::watch_of_slider(Index i, const system::State& from) const {
   const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
   if (slider.limit == 0.0) return Watch::nothing;

@@ -28,6 +28,10 @@ class StructureTimeline final : public Timeline {
   Crossing first_crossing(const system::State& from, const system::State& to, double least, Look look) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
+  /// The branch on which a march goes on from a state: of a slider the side to which it slips, 1 or -1; of a stop that
+  /// is closed 1; else 0.
+  int branch(Index contact, const system::State& state) const;
+
  private:
   enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again };
   struct Path;

@@ -1,3 +1,4 @@
+#include <rubato/integrate/mechanism/mechanism_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/system/mechanism_equations.hpp>
 
@@ -54,7 +55,8 @@ std::string non_finite_part_ahead(const MarchReport& report, const system::Mecha
 /// The last parts that changed, each once, the last first.
 Events last_of(const Events& events) {
   constexpr std::size_t most = 3;
-  Events last{events.parts, {}};
+  Events last;
+  last.parts = events.parts;
   for (auto event = events.all.rbegin(); event != events.all.rend() && last.all.size() < most; ++event) {
     const auto is_same = [&](const Event& other) { return other.part == event->part; };
     if (std::none_of(last.all.begin(), last.all.end(), is_same)) last.all.push_back(*event);
@@ -82,22 +84,6 @@ std::string collapsed_strut(const system::Mechanism& mechanism, const system::St
 }
 
 }  // namespace
-
-Events events_of(std::span<const LockEvent> events, const system::Mechanism& mechanism) {
-  const auto& locks = mechanism.model().locks;
-  Events result;
-  for (const auto& lock : locks) result.parts.push_back(lock.name);
-  for (const auto& friction : mechanism.model().frictions) result.parts.push_back(friction.label());
-  for (const LockEvent& event : events) {
-    const bool is_lock = event.friction < 0;
-    const auto part =
-        is_lock ? static_cast<std::size_t>(event.lock) : locks.size() + static_cast<std::size_t>(event.friction);
-    const Change change = is_lock ? (event.has_engaged ? Change::locks : Change::lets_go)
-                                  : (event.has_engaged ? Change::sticks : Change::slips);
-    result.all.push_back({event.t, part, change, event.energy_lost});
-  }
-  return result;
-}
 
 MarchFailure failure_of(const MarchReport& report, const system::Mechanism& mechanism, const system::State& state,
                         const Transitions& transitions) {

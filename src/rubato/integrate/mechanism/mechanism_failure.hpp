@@ -14,9 +14,6 @@ struct Transitions {
   std::span<const LockEvent> all = {};  ///< in the order of time
 };
 
-/// The same for all that looks at events, of whatever system.
-Events events_of(std::span<const LockEvent> events, const system::Mechanism& mechanism);
-
 /// Why a march of a mechanism ended before its time. A singular configuration is named with the joints that repeat
 /// others there.
 /// @param state        the last accepted one

@@ -1,4 +1,4 @@
-// Events of a march: when joints lock and let go, stick and slip.
+// Events of a march: when joints lock and let go, stick and slip, and sliders and stops of a structure likewise.
 
 const is_of_events = (table) => table.attributes.type === "events" && ["joint", "event"].every((name) => variable_of(table, name));
 
@@ -10,8 +10,17 @@ const event_kinds = {
   lets_go: {text: "Stop lets go", symbol: "square-open", color: palette[1]},
   sticks: {text: "Sticks", symbol: "triangle-down", color: palette[2]},
   slips: {text: "Slips", symbol: "triangle-up-open", color: palette[2]},
+  closes: {text: "Closes", symbol: "square", color: palette[1]},
+  opens: {text: "Opens", symbol: "square-open", color: palette[1]},
 };
 const most_marks = 1000;  // of a kind
+
+// What a table of events calls the parts that change.
+const joints_of_events = {one: "Joint", all: "joints", nothing: "no joint locked or let go, stuck or slipped",
+                          lost: " Energy lost: what the impact of a rigid lock took, or the spring of a damped stop still held as it let go."};
+const contacts_of_events = {one: "Contact", all: "contacts", nothing: "no slider slipped and no stop closed",
+                            lost: " Energy lost: what the spring of a damped stop still held as it let go."};
+const parts_of_events = (table) => table.attributes.of === "contacts" ? contacts_of_events : joints_of_events;
 
 /** The events of an analysis in the order of time: {time, joint, event, kind, energy}. */
 function events_of(analysis) {
@@ -57,14 +66,14 @@ function event_traces(events, where, low = null) {
   });
 }
 
-/** When which joint did what, over the time of the run. */
-function events_figure(events, range) {
+/** When which part did what, over the time of the run. */
+function events_figure(events, range, parts) {
   const joints = [...new Set(events.map(({joint}) => joint))];
   return make_figure({
-    caption: `Events of the joints over time: ${count_text(events.length)} in all.`, height: Math.min(600, 150 + 28 * joints.length),
+    caption: `Events of the ${parts.all} over time: ${count_text(events.length)} in all.`, height: Math.min(600, 150 + 28 * joints.length),
     draw: () => ({
       traces: event_traces(events, ({time, joint}) => ({x: time, y: plot_text(joint)})),
-      layout: {xaxis: axis("Time [s]", {range}), yaxis: axis("Joint [–]", {
+      layout: {xaxis: axis("Time [s]", {range}), yaxis: axis(`${parts.one} [–]`, {
         type: "category", categoryarray: joints.map(plot_text).reverse(), range: [-0.6, joints.length - 0.4], dtick: 1, tick0: 0,
       })},
     }),
@@ -72,12 +81,12 @@ function events_figure(events, range) {
 }
 
 /** A row an event where there are few, else a row a joint and kind. */
-function events_table(events) {
+function events_table(events, parts) {
   const joule = (energy) => number_node(energy, 4);
   if (events.length <= 60) {
     return make_table({
-      caption: "Events of the joints. Energy lost: what the impact of a rigid lock took, or the spring of a damped stop still held as it let go.",
-      columns: [{title: "Time [s]"}, {title: "Joint", is_text: true}, {title: "Event", is_text: true}, {title: "Energy lost [J]"}],
+      caption: `Events of the ${parts.all}.${parts.lost}`,
+      columns: [{title: "Time [s]"}, {title: parts.one, is_text: true}, {title: "Event", is_text: true}, {title: "Energy lost [J]"}],
       rows: events.map(({time, joint, kind, energy}) => [number_node(time, 9), joint, event_kinds[kind]?.text ?? kind, joule(energy)]),
     });
   }
@@ -88,8 +97,8 @@ function events_table(events) {
     groups.get(key).push(event);
   }
   return make_table({
-    caption: "Events of the joints by kind. Each is in the results file.",
-    columns: [{title: "Joint", is_text: true}, {title: "Event", is_text: true}, {title: "Number"}, {title: "First [s]"}, {title: "Last [s]"},
+    caption: `Events of the ${parts.all} by kind. Each is in the results file.`,
+    columns: [{title: parts.one, is_text: true}, {title: "Event", is_text: true}, {title: "Number"}, {title: "First [s]"}, {title: "Last [s]"},
               {title: "Energy lost [J]"}],
     rows: [...groups.values()].map((group) => [
       group[0].joint, event_kinds[group[0].kind]?.text ?? group[0].kind, count_text(group.length), number_node(group[0].time, 7),
@@ -99,11 +108,11 @@ function events_table(events) {
 }
 
 function write_events(chapter, analysis, table) {
-  const events = events_of(analysis);
+  const events = events_of(analysis), parts = parts_of_events(table);
   if (events.length === 0) {
-    add_section(chapter, "Events", element("p", {class: "note"}, "Nothing happened: no joint locked or let go, stuck or slipped."));
+    add_section(chapter, "Events", element("p", {class: "note"}, `Nothing happened: ${parts.nothing}.`));
     return;
   }
   const last = table.is_envelope ? element("p", {class: "note"}, `The last ${count_text(events.length)} of ${count_text(table.rows)} events.`) : null;
-  add_section(chapter, "Events", [last, events_figure(events, padded_range([analysis.tables[0].overview[0][0]])), events_table(events)].filter((node) => node));
+  add_section(chapter, "Events", [last, events_figure(events, padded_range([analysis.tables[0].overview[0][0]]), parts), events_table(events, parts)].filter((node) => node));
 }

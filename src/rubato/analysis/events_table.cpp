@@ -1,0 +1,83 @@
+#include <rubato/analysis/events_table.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rubato::analysis {
+namespace {
+
+using integrate::Change;
+
+results::Block scalar(const std::string& variable, const std::string& unit, const std::string& description) {
+  return {variable, unit, description, "", {}};
+}
+
+/// What the impact of a rigid lock took, or the spring of a damped stop still held as it let go.
+std::string energy_told(const integrate::Event& event) {
+  if (!(event.energy_lost > 0.0)) return {};
+  if (event.change == Change::locks) return fmt::format(", taking {:.4g} J", event.energy_lost);
+  return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
+}
+
+/// A time to one digit more than is known of it. What happens soon has three digits at least.
+std::string told_time(double t, double known) {
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(known))), 0, 12);
+  if (std::abs(t) < 100.0 * std::pow(10.0, -decimals)) return fmt::format("{:.3g}", t);
+  std::string text = fmt::format("{:.{}f}", t, decimals);
+  if (decimals > 0) text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+void write_events(const std::string& name, const integrate::Events& events, results::Sink& sink) {
+  if (events.parts.empty()) return;
+  results::TableLayout layout{
+      name,
+      "events",
+      "time",
+      {scalar("time", "s", "when it happened"),
+       {"joint", "1", "whose lock or friction", "", {}, events.parts},
+       {"event", "1", "what it did", "", {}, {"lets_go", "locks", "slips", "sticks"}},
+       scalar("energy_lost", "J", "energy that a rigid lock took, or that a damped stop still held as it let go")},
+      {{"type", "events"}}};
+  if (events.are_of_contacts) {
+    layout.blocks[1].description = "which slider or stop";
+    layout.blocks[2].categories.insert(layout.blocks[2].categories.end(), {"opens", "closes"});
+    layout.attributes.emplace_back("of", "contacts");
+  }
+  const auto rows = sink.open(layout);
+  for (const auto& event : events.all) {
+    const std::array<double, 4> row{event.t, static_cast<double>(event.part), static_cast<double>(event.change),
+                                    event.energy_lost};
+    rows->append(row);
+  }
+}
+
+std::string warning_of(const integrate::Events& events) {
+  if (events.left_out == 0) return {};
+  return fmt::format("of {} events the table has the first {}, up to t = {:.9g} s",
+                     events.left_out + static_cast<long>(events.all.size()), events.all.size(), events.all.back().t);
+}
+
+void report_events(const integrate::Events& events, double known, std::vector<std::string>& findings) {
+  constexpr long most_told = 6;
+  std::vector<long> changes(events.parts.size(), 0);
+  for (std::size_t i = events.at_start; i < events.all.size(); ++i) {
+    const integrate::Event& event = events.all[i];
+    const bool is_lock = event.change == Change::locks || event.change == Change::lets_go;
+    if (is_lock || ++changes[event.part] <= most_told)
+      findings.push_back(fmt::format("\"{}\" {} at t = {} s{}", events.parts[event.part],
+                                     integrate::name_of(event.change), told_time(event.t, known),
+                                     is_lock ? energy_told(event) : ""));
+  }
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (changes[i] > most_told)
+      findings.push_back(fmt::format("\"{}\" sticks and slips {} times in all", events.parts[i], changes[i]));
+}
+
+}  // namespace rubato::analysis

@@ -1,0 +1,56 @@
+#include <rubato/integrate/contact_events.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace rubato::integrate {
+
+ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const system::State& start,
+                             const StructureTimeline* located)
+    : system_(system), located_(located), parts_(static_cast<std::size_t>(system.first_law()), 0) {
+  events_.are_of_contacts = true;
+  const Index sliders = system.slider_count();
+  constexpr double none = std::numeric_limits<double>::infinity(), least = std::numeric_limits<double>::denorm_min();
+  for (Index i = 0; i < system.first_law(); ++i) {
+    const auto contact = static_cast<std::size_t>(i);
+    const double limit = i < sliders ? system.sliders()[contact].limit : least;
+    if (limit == 0.0) continue;  // without a force there is no friction
+    parts_[contact] = events_.parts.size();
+    events_.parts.push_back(i < sliders ? system.sliders()[contact].name
+                                        : system.stops()[static_cast<std::size_t>(i - sliders)].name);
+    watched_.push_back({i, limit, i < sliders ? -limit : -none, 0});
+    watched_.back().branch = branch_of(watched_.back(), start);
+    if (i >= sliders && watched_.back().branch != 0) note_stop(i, start, true);
+  }
+  events_.at_start = events_.all.size();
+}
+
+bool ContactEvents::accepted(const system::State& /*before*/, const system::State& after) {
+  for (Watched& one : watched_)
+    if (const int now = branch_of(one, after); now != one.branch) note_change(one, now, after);
+  return true;
+}
+
+void ContactEvents::note_change(Watched& one, int now, const system::State& state) {
+  if (one.contact >= system_.slider_count()) {
+    note_stop(one.contact, state, now != 0);
+  } else {
+    if (one.branch != 0) note_slider(state.t, one.contact, true);
+    if (now != 0) note_slider(state.t, one.contact, false);
+  }
+  one.branch = now;
+}
+
+void ContactEvents::note_slider(double t, Index slider, bool sticks) {
+  events_.add({t, parts_[static_cast<std::size_t>(slider)], sticks ? Change::sticks : Change::slips});
+}
+
+void ContactEvents::note_stop(Index contact, const system::State& state, bool closes) {
+  const auto& stop = system_.stops()[static_cast<std::size_t>(contact - system_.slider_count())];
+  const double depth = std::max(0.0, system_.relative_displacement(contact, state.q) - stop.gap);
+  const bool leaves_energy = !closes && stop.damping > 0.0;
+  events_.add({state.t, parts_[static_cast<std::size_t>(contact)], closes ? Change::closes : Change::opens,
+               leaves_energy ? 0.5 * stop.stiffness * depth * depth : 0.0});
+}
+
+}  // namespace rubato::integrate
