@@ -133,6 +133,20 @@ TEST(BoucWen, DissipatesWhatItsLoopEncloses) {
   }
 }
 
+// With a post_yield_ratio of 1 z has no force. Steady responses waited for it to repeat, and called what repeats
+// quasi-periodic.
+TEST(BoucWen, RemembersNothingWhereItDoesNotYield) {
+  const auto law = make("bouc_wen", {3.0, 1.0, 1.0, 0.3, 0.8, 2.0});
+  EXPECT_EQ(law->memory_size(), 0);
+  const LawAnswer answer = law->advance({0.1, 0.0}, nullptr, {-0.4, 1.0}, nullptr);
+  EXPECT_DOUBLE_EQ(answer.force, -1.2);
+  EXPECT_EQ(answer.by_u, 3.0);
+  EXPECT_EQ(law->at({0.5, 0.0}, nullptr).force, 1.5);
+  EXPECT_EQ(law->stored_energy(2.0, nullptr), 6.0);
+  EXPECT_EQ(law->dissipated({0.0, 0.0}, nullptr, {1.0, 0.0}, nullptr), 0.0);
+  EXPECT_EQ(law->largest_stiffness(), 3.0);
+}
+
 TEST(BoucWen, RefusesWhatItCannotBe) {
   EXPECT_THROW(make("bouc_wen", {0.0, 0.0, 1.0, 0.5, 0.5, 1.0}), InvalidInput);
   EXPECT_THROW(make("bouc_wen", {1.0, 1.5, 1.0, 0.5, 0.5, 1.0}), InvalidInput);

@@ -267,6 +267,24 @@ class BoucWen final : public Law, public LawSlopes {
   Branch together_, apart_;  // z and the motion in the same direction, and in opposite ones
 };
 
+/// What is left where alpha is 1: z would go on for ever without a force.
+class Elastic final : public Law {
+ public:
+  explicit Elastic(double stiffness) : stiffness_(stiffness) {}
+
+  LawAnswer advance(const LawPoint&, const double*, const LawPoint& to, double*) const override {
+    return {stiffness_ * to.u, stiffness_, 0.0};
+  }
+  LawAnswer at(const LawPoint& point, const double*) const override { return {stiffness_ * point.u, stiffness_, 0.0}; }
+  double stored_energy(double u, const double*) const override { return 0.5 * stiffness_ * u * u; }
+  double dissipated(const LawPoint&, const double*, const LawPoint&, const double*) const override { return 0.0; }
+  double largest_stiffness() const override { return stiffness_; }
+  bool is_odd() const override { return true; }
+
+ private:
+  double stiffness_;  // [N/m]
+};
+
 std::shared_ptr<const Law> make(const LawDescription& description, const numerics::Parameters& parameters,
                                 const std::string& part) {
   enum { stiffness, ratio, a, beta, gamma, n };
@@ -287,6 +305,7 @@ std::shared_ptr<const Law> make(const LawDescription& description, const numeric
                               value[beta] + value[gamma]));
   if (!(value[beta] >= 0.0))
     refuse(beta, fmt::format("beta must not be negative, got {}: loops would make energy", value[beta]));
+  if (value[ratio] == 1.0) return std::make_shared<Elastic>(value[stiffness]);
   return std::make_shared<BoucWen>(value[stiffness], value[ratio], value[a], value[beta], value[gamma], value[n]);
 }
 
