@@ -36,6 +36,25 @@ double largest_error(const MechanismStudy& ran, const std::string& variable, con
   return largest;
 }
 
+// 3 * 0.1 is more than 0.3 by round-off, which counted as a time beyond the end where the last step was shorter than
+// 1e-8 s: the row was missing.
+TEST(RowsBetweenSteps, TellTheEndHoweverShortTheLastStepIs) {
+  const MechanismStudy ran(std::string(block) + R"(
+[[force]]
+on = "block.x"
+expression = "t < 0.2999999995 ? 1 : 2"
+[[analysis]]
+name = "a"
+type = "transient"
+duration = 0.3
+step = { tolerance = 1e-4 }
+output = { interval = 0.1 }
+)");
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  ASSERT_EQ(ran.table("a").rows.size(), 4u);
+  EXPECT_EQ(ran.at(3, "a", "time"), 0.3);
+}
+
 // What is held passes the load on as it is. A cubic through the reactions at four ends of steps led across the kink of
 // a load where nothing moves, and rows beside it were wrong by percents of the load.
 TEST(RowsBetweenSteps, TellReactionsUpToTheKinkOfALoad) {

@@ -1,5 +1,6 @@
 #include <rubato/analysis/transient_observer.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -54,7 +55,8 @@ double TransientObserver::next_time() const {
 }
 
 void TransientObserver::record_between(const system::State& before, const system::State& after) {
-  const double round_off = 1e-9 * (after.t - before.t);
+  // Also of multiples of an interval that are the end of the run, however short its last step.
+  const double round_off = std::max(1e-9 * (after.t - before.t), 1e-12 * plan_.duration);
   interpolation_.take(before, after);
   for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
     ++next_;
