@@ -77,5 +77,45 @@ TEST(FloatingStructure, IsNotMarchedForUnderLoads) {
   EXPECT_THROW(marching.solve(load(2.0), SteadyStart::unloaded, response), InvalidInput);
 }
 
+/// Loads that balance, and a static one that does not.
+Excitation carrying_off(Index sliders) {
+  ComplexVector once(2);
+  once << 0.5, -0.5;
+  Excitation excitation;
+  excitation.angular_frequency = 2.0;
+  excitation.harmonics = {{1, once}};
+  excitation.constant = Vector::Unit(2, 0) * 0.4;
+  excitation.limits = Vector::Constant(sliders, 0.2);
+  return excitation;
+}
+
+// Far away what a period adds is nothing beside the way that was gone: the march came to rest 2.5e10 m from its start
+// with an amplitude of 0.
+TEST(FloatingStructure, IsCarriedOffByAStaticLoadThatNothingBalances) {
+  Matrix mass = Matrix::Zero(2, 2), between(2, 2), to_ground = Matrix::Zero(2, 2);
+  mass.diagonal() << 1.7, 1.2;
+  between << 1.0, -1.0, -1.0, 1.0;
+  to_ground(0, 0) = 0.1;
+  for (const auto start : {SteadyStart::unloaded, SteadyStart::rest}) {
+    for (const Matrix& damping : {Matrix(0.1 * between), Matrix(0.1 * between + to_ground)}) {
+      const auto linear = testing::structure(mass, damping, 1.5 * between, {}, {});
+      TimeMarchingSolver marching(linear, TimeMarchingOptions{}, observing({0, 1}));
+      SteadyResponse response;
+      marching.solve(carrying_off(0), start, response);
+      EXPECT_EQ(response.status, SteadyStatus::unbounded);
+      EXPECT_TRUE(marching.waveform(8).position.array().isNaN().all());
+    }
+    const auto sticking = floating();
+    TimeMarchingSolver marching(sticking, TimeMarchingOptions{}, observing({0, 1}));
+    SteadyResponse response;
+    marching.solve(carrying_off(1), start, response);
+    EXPECT_EQ(response.status, SteadyStatus::unbounded);
+    Excitation balanced = carrying_off(1);  // and the point after it is told as if it were the first
+    balanced.constant[1] = -0.4;
+    marching.solve(balanced, start, response);
+    EXPECT_EQ(response.status, SteadyStatus::converged);
+  }
+}
+
 }  // namespace
 }  // namespace rubato::integrate

@@ -41,6 +41,7 @@ bool BroydenExtrapolation::knows_distance(Index lane) const {
 }
 
 void BroydenExtrapolation::distrust(Index lane) {
+  if (lane >= lanes_) return;
   updates_[static_cast<std::size_t>(lane)] = 0;
   for (Index i = 0; i < size_; ++i)
     for (Index j = 0; j < size_; ++j) inverse_(i * size_ + j, lane) = first_(i, j);
@@ -130,6 +131,10 @@ void BroydenExtrapolation::next(const LaneArray& states, const LaneArray& residu
 
 bool AndersonExtrapolation::knows_distance(Index lane) const {
   return static_cast<int>(histories_[static_cast<std::size_t>(lane)].dr.size()) >= telling_changes;
+}
+
+void AndersonExtrapolation::distrust(Index lane) {
+  if (lane < static_cast<Index>(histories_.size())) histories_[static_cast<std::size_t>(lane)] = {};
 }
 
 void AndersonExtrapolation::begin(PeriodMap&, Index lanes) { histories_.assign(static_cast<std::size_t>(lanes), {}); }

@@ -19,7 +19,7 @@ class OrbitExtrapolation {
   virtual void next(const LaneArray& states, const LaneArray& residuals, LaneArray& steps) = 0;
   /// Whether the last step guesses the distance to the end of the march: enough has been seen of how slowly it decays.
   virtual bool knows_distance(Index lane) const = 0;
-  /// What was learnt in this lane misleads.
+  /// What was learnt in this lane misleads, if anything was.
   virtual void distrust(Index lane) = 0;
   /// Learns the derivative of the residuals anew, by marching a period from states beside the given ones, for the lanes
   /// that ask for it. Returns the periods marched; none where that costs more than it is worth.
@@ -63,7 +63,7 @@ class AndersonExtrapolation final : public OrbitExtrapolation {
   void begin(PeriodMap& map, Index lanes) override;
   void next(const LaneArray& states, const LaneArray& residuals, LaneArray& steps) override;
   bool knows_distance(Index lane) const override;
-  void distrust(Index lane) override { histories_[static_cast<std::size_t>(lane)] = {}; }
+  void distrust(Index lane) override;
   int measure(PeriodMap&, const LaneArray&, const std::vector<char>&) override { return 0; }
   void forget() override {}
 

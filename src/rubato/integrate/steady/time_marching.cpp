@@ -3,7 +3,6 @@
 #include <rubato/integrate/steady/lane_map.hpp>
 #include <rubato/integrate/steady/stepper_map.hpp>
 #include <rubato/integrate/steady/time_marching_parts.hpp>
-#include <rubato/integrate/steady/undamped_resonance.hpp>
 
 #include <fmt/format.h>
 
@@ -12,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 namespace rubato::integrate {
 namespace {
@@ -24,33 +22,21 @@ constexpr int most_retries = 2;  // with twice the steps, of a march that does n
 // Steps are chosen for this part of the tolerance, so that the next point seldom needs a second round.
 constexpr double aim = 0.7;
 
-// A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite. One
-// that drifts may have been led to a speed beside which what a period adds is nothing.
-void find_unbounded(const system::LocallyNonlinear& system, std::span<const Excitation> excitations,
-                    const SteadyRequest& request, std::span<SteadyResponse> responses) {
-  if (system.stop_count() > 0 || system.law_count() > 0) return;  // they may bound the motion
-  std::optional<UndampedResonance> resonance;
-  for (std::size_t l = 0; l < responses.size(); ++l) {
-    if (is_repeating(responses[l].status) && responses[l].status != SteadyStatus::drifting) continue;
-    if (!resonance) resonance.emplace(system);
-    if (resonance->is_driven_beyond_friction(excitations[l]))
-      make_unbounded(request, system.slider_count(), responses[l]);
-  }
-}
-
 // The place of a structure that drifts says nothing.
 void leave_out_means(SteadyResponse& response) {
   for (Index o = 0; o < response.drift.size(); ++o)
     if (response.drift[o] != 0.0) response.mean[o] = response.rms[o] = not_a_number;
 }
 
+bool has_static_load(const Excitation& excitation) {
+  return excitation.constant.size() > 0 && !excitation.constant.isZero(0.0);
+}
+
 // A structure that floats, or a part of it, goes on with whatever speed the march gives it.
 void refuse_loads_on(const Matrix& free_motions, const Excitation& excitation) {
   for (const LoadHarmonic& load : excitation.harmonics)
     for (Index k = 0; k < free_motions.cols(); ++k) {
-      const auto motion = free_motions.col(k);
-      const double size = motion.cwiseAbs().dot(load.amplitude.cwiseAbs());
-      if (!(std::abs(motion.cast<Complex>().dot(load.amplitude)) > 1e-12 * size)) continue;
+      if (!drives(free_motions.col(k), load.amplitude)) continue;
       throw InvalidInput(
           "nothing holds the structure against its loads (it floats), and a march keeps whatever speed it has; take "
           "solver = \"periodic\", or a spring to the ground that is soft beside the others");
@@ -58,6 +44,22 @@ void refuse_loads_on(const Matrix& free_motions, const Excitation& excitation) {
 }
 
 }  // namespace
+
+// Once a structure is far away what a period adds is nothing beside the way that it has gone, and it seems to repeat.
+bool TimeMarchingSolver::is_unbounded(const Excitation& excitation, SteadyStatus found) {
+  const bool is_loaded = has_static_load(excitation);
+  for (Index k = 0; is_loaded && k < free_.cols(); ++k)
+    if (drives(free_.col(k), excitation.constant.cast<Complex>())) return true;
+  if (system_.stop_count() > 0 || system_.law_count() > 0) return false;  // they may bound the motion
+  // A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite. One
+  // that drifts may have been led to a speed beside which what a period adds is nothing.
+  const bool repeats = is_repeating(found) && found != SteadyStatus::drifting;
+  if (repeats && !is_loaded) return false;
+  if (!resonance_) resonance_.emplace(system_);
+  if (is_loaded && system_.slider_count() == 0 && resonance_->is_carried_off(excitation.constant)) return true;
+  return repeats ? resonance_->is_driven_beyond_friction(0.0, excitation.constant.cast<Complex>(), excitation.limits)
+                 : resonance_->is_driven_beyond_friction(excitation);
+}
 
 TimeMarchingSolver::TimeMarchingSolver(const system::LocallyNonlinear& system, TimeMarchingOptions options,
                                        SteadyRequest request)
@@ -163,12 +165,19 @@ bool TimeMarchingSolver::solve_with(Engine& engine, std::span<const Excitation> 
     }
     steps = more;
   }
-  find_unbounded(system_, excitations, request_, responses);
+  for (std::size_t l = 0; l < count; ++l)
+    if (is_unbounded(excitations[l], responses[l].status)) {
+      make_unbounded(request_, system_.slider_count(), responses[l]);
+      // What was met far away tells nothing of the next point.
+      states.col(static_cast<Index>(l)).setConstant(not_a_number);
+      engine.extrapolation->distrust(static_cast<Index>(l));
+    }
   steps_ = engine.steps = steps;
   engine.next_steps = 8 * static_cast<int>(std::ceil(std::min<double>(suggestion, options_.max_steps) / 8.0));
   for (std::size_t l = 0; l < count; ++l) {
     Place& place = engine.places[l];
-    place.earlier_frequency = place.state.size() > 0 ? place.excitation.angular_frequency : 0.0;
+    place.earlier_frequency =
+        place.state.size() > 0 && place.state.allFinite() ? place.excitation.angular_frequency : 0.0;
     place.earlier = place.state;
     place.excitation = excitations[l];
     place.state = states.col(static_cast<Index>(l));
@@ -203,6 +212,12 @@ Waveform TimeMarchingSolver::waveform(int points) const {
   const Place& place = last_->places.back();
   const Index n = system_.size(), m = system_.slider_count();
   const int steps = last_->steps;
+  const double period = place.excitation.period(), step = period / steps;
+  result.time.resize(points);
+  for (int k = 0; k < points; ++k) result.time[k] = period * k / points;
+  result.position = result.velocity = Matrix::Constant(n, points, not_a_number);
+  result.slider_force = result.displacement = Matrix::Constant(m, points, not_a_number);
+  if (!place.state.allFinite()) return result;  // unbounded
   SteadyRequest all;
   for (Index i = 0; i < n; ++i) all.observed.push_back({i, ground});
   const auto map = last_ == lanes_.get() ? make_lane_map(options_.method, system_, all)
@@ -213,14 +228,7 @@ Waveform TimeMarchingSolver::waveform(int points) const {
   record.reset(n, system_, steps, true, false);
   LaneArray after;
   map->advance(place.state.array(), after, &records, 0);
-  const double period = place.excitation.period(), step = period / steps;
-  result.time.resize(points);
-  result.position.resize(n, points);
-  result.velocity.resize(n, points);
-  result.slider_force.resize(m, points);
-  result.displacement.resize(m, points);
   for (int k = 0; k < points; ++k) {
-    result.time[k] = period * k / points;
     const Index j = std::min<Index>(steps - 1, static_cast<Index>(result.time[k] / step));
     const double s = result.time[k] / step - static_cast<double>(j);
     // The cubic Hermite polynomial of a step, and the return map of the sliders from its start.

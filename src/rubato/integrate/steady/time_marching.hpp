@@ -2,8 +2,10 @@
 
 #include <rubato/integrate/steady/marching_options.hpp>
 #include <rubato/integrate/steady/orbit_search.hpp>
+#include <rubato/integrate/steady/undamped_resonance.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace rubato::integrate {
@@ -71,6 +73,9 @@ class TimeMarchingSolver final : public SteadySolver {
   bool release_offsets(const Engine& engine, Index lane, const Excitation& excitation, const SteadyResponse& response,
                        LaneArray& states) const;
 
+  /// Whether the loads carry a motion off for ever, whatever the march took it for.
+  bool is_unbounded(const Excitation& excitation, SteadyStatus found);
+
   const system::LocallyNonlinear& system_;
   TimeMarchingOptions options_;
   SteadyRequest request_, amplitudes_;
@@ -79,8 +84,9 @@ class TimeMarchingSolver final : public SteadySolver {
   int order_;
   bool transitions_rule_;  ///< the error comes from transitions between the samples more than from the method
   Vector slider_stiffness_;
-  Matrix free_;                               ///< motions of a structure that floats [n x any]
-  std::unique_ptr<Engine> lanes_, steppers_;  // lanes_ may be null
+  Matrix free_;                                 ///< motions of a structure that floats [n x any]
+  std::optional<UndampedResonance> resonance_;  ///< once asked for
+  std::unique_ptr<Engine> lanes_, steppers_;    // lanes_ may be null
   const Engine* last_ = nullptr;
   int steps_ = 0;
 };

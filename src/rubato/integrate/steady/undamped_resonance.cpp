@@ -39,14 +39,36 @@ Matrix undamped(const SparseMatrix& damping, const SparseMatrix& mass, const Mat
 UndampedResonance::UndampedResonance(const system::LocallyNonlinear& system)
     : system_(system), stiffness_(system, StuckSliders(static_cast<std::size_t>(system.slider_count()), false)) {}
 
+bool drives(const Vector& motion, const ComplexVector& load) {
+  const double given = std::abs((motion.transpose().cast<Complex>() * load)(0));
+  return given > driven * motion.cwiseAbs().dot(load.cwiseAbs());
+}
+
+const Matrix& UndampedResonance::rigid_motions() {
+  if (!rigid_) {
+    stiffness_.factorise(0.0);
+    rigid_ = stiffness_.free_motions();
+  }
+  return *rigid_;
+}
+
 Matrix UndampedResonance::motions_at(double w) {
-  if (w == 0.0 && at_rest_) return *at_rest_;
-  stiffness_.factorise(w);
-  Matrix motions = stiffness_.free_motions();
-  if (w > 0.0) return motions;
-  if (motions.cols() > 0) motions = undamped(system_.damping(), system_.mass(), motions);
-  at_rest_ = motions;
-  return motions;
+  if (w > 0.0) {
+    stiffness_.factorise(w);
+    return stiffness_.free_motions();
+  }
+  if (!at_rest_) {
+    at_rest_ = rigid_motions();
+    if (at_rest_->cols() > 0) at_rest_ = undamped(system_.damping(), system_.mass(), *at_rest_);
+  }
+  return *at_rest_;
+}
+
+bool UndampedResonance::is_carried_off(const Vector& load) {
+  const Matrix& motions = rigid_motions();
+  for (Index c = 0; c < motions.cols(); ++c)
+    if (drives(motions.col(c), load.cast<Complex>())) return true;
+  return false;
 }
 
 bool UndampedResonance::is_driven_beyond_friction(double w, const ComplexVector& load, const Vector& limits) {
@@ -64,9 +86,8 @@ bool UndampedResonance::is_driven_beyond_friction(double w, const ComplexVector&
   }
   for (Index c = 0; c < motions.cols(); ++c) {
     const Vector motion = motions.col(c);
+    if (!drives(motion, load)) continue;
     const double given = std::abs((motion.transpose().cast<Complex>() * load)(0));
-    const double size = motion.cwiseAbs().dot(load.cwiseAbs());
-    if (!(given > driven * size)) continue;
     const double taken = friction_along(system_, limits, motion);
     if (w == 0.0 ? given > taken : std::numbers::pi * given >= 4.0 * taken) return true;
   }

@@ -22,16 +22,25 @@ class UndampedResonance {
   /// @param load    [n] [N], at one frequency
   /// @param limits  of the sliders [m] [N]
   bool is_driven_beyond_friction(double angular_frequency, const ComplexVector& load, const Vector& limits);
+  /// Whether a constant load carries the structure off for ever where sliders are none: no spring resists it, though a
+  /// damper may bound the speed.
+  /// @param load  [n] [N]
+  bool is_carried_off(const Vector& load);
   /// Whether any of the loads is.
   bool is_driven_beyond_friction(const Excitation& excitation);
 
  private:
   Matrix motions_at(double angular_frequency);
+  const Matrix& rigid_motions();
 
   const system::LocallyNonlinear& system_;
   DynamicStiffness stiffness_;
-  std::optional<Matrix> at_rest_;  ///< motions at w = 0, once asked for
+  std::optional<Matrix> rigid_;    ///< motions that no spring resists, once asked for
+  std::optional<Matrix> at_rest_;  ///< those that no damper resists either
 };
+
+/// Whether a load has a part in a motion that round-off does not explain.
+bool drives(const Vector& motion, const ComplexVector& load);
 
 /// Makes a response infinite: its status is `unbounded`, amplitudes are infinite, phases and works no numbers.
 void make_unbounded(const SteadyRequest& request, Index sliders, SteadyResponse& response);
