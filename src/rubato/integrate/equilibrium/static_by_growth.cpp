@@ -1,13 +1,20 @@
+#include <rubato/integrate/equilibrium/contact_tangent.hpp>
 #include <rubato/integrate/equilibrium/easiest_motion.hpp>
 #include <rubato/integrate/equilibrium/static_by_growth.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace rubato::integrate {
 namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int operations_of_a_law = 32;  // roundings that its force may have
 
 class Growth final : public numerics::NewtonProblem {
  public:
@@ -29,6 +36,11 @@ class Growth final : public numerics::NewtonProblem {
     slope_.setZero(system.contact_count());
     change_.setZero(system.size());
     accepted_ = state_.q;
+    own_diagonal_ = system.stiffness().diagonal();
+    magnitude_ = system.stiffness().cwiseAbs();
+    most_summands_ = most_summands();
+    tangent_.emplace(system, place_, static_cast<Index>(free_.size()));
+    if (!free_.empty()) factor_.analyse(tangent_->with(slope_));
   }
 
   StaticEquilibrium solve() {
@@ -40,7 +52,7 @@ class Growth final : public numerics::NewtonProblem {
       share_ = std::min(1.0, reached + step);
       for (const auto& one : held_) state_.q[one.coordinate] = share_ * one.value;
       accepted_ = state_.q;
-      if (numerics::newton(*this, rules()).has_converged() && is_stable()) {
+      if (is_balanced() && is_stable()) {
         reached = share_;
         known = state_.q;
         step *= 2.0;
@@ -77,27 +89,40 @@ class Growth final : public numerics::NewtonProblem {
     load_contacts();
     residual_ = share_ * load_ - system_.stiffness() * state_.q;
     system_.add_slider_forces(state_.slider_force, -1.0, residual_);
-    // Round-off of the sum at each coordinate.
-    Vector terms = share_ * load_.cwiseAbs() + system_.stiffness().cwiseAbs() * state_.q.cwiseAbs();
-    for (Index i = 0; i < system_.contact_count(); ++i)
+    diagonal_ = own_diagonal_;
+    // What the residual is made of, whose round-off it has. That of a contact comes with the places of its ends.
+    terms_ = share_ * load_.cwiseAbs();
+    terms_.noalias() += magnitude_ * state_.q.cwiseAbs();
+    for (Index i = 0; i < system_.contact_count(); ++i) {
+      double reach = 0.0;
       for (const Index end : ends(i))
-        if (end != ground)
-          terms[end] += std::abs(state_.slider_force[i]) +
-                        std::abs(slope_[i]) * std::abs(system_.relative_displacement(i, state_.q));
-    is_round_off_ = true;
-    double sum = 0.0;
-    for (const Index i : free_) {
-      is_round_off_ = is_round_off_ && std::abs(residual_[i]) <= 1e-14 * terms[i];
-      const double stiffness = system_.stiffness().coeff(i, i) + of_contacts(i);
-      sum += residual_[i] * residual_[i] / std::max(stiffness, 1e-300);
+        if (end != ground) reach += std::abs(state_.q[end]);
+      for (const Index end : ends(i))
+        if (end != ground) {
+          diagonal_[end] += std::abs(slope_[i]);
+          terms_[end] += std::abs(state_.slider_force[i]) + std::abs(slope_[i]) * reach;
+        }
     }
+    is_round_off_ = true;
+    double sum = 0.0, of_terms = 0.0;
+    for (const Index i : free_) {
+      is_round_off_ = is_round_off_ && std::abs(residual_[i]) <= epsilon * terms_[i];
+      const double stiffness = std::max(diagonal_[i], 1e-300);
+      sum += residual_[i] * residual_[i] / stiffness;
+      of_terms += terms_[i] * terms_[i] / stiffness;
+    }
+    of_terms_ = std::sqrt(of_terms);
     return std::sqrt(sum);
   }
-  bool is_solved(double) const { return is_round_off_; }
+  bool is_solved(double residual) {
+    last_ = residual;
+    may_be_enough_ = may_be_round_off(residual);
+    return is_round_off_;
+  }
   bool factorise() {
     if (free_.empty()) return true;
     ++factorisations_;
-    return factor_.factorise(analysed_tangent());
+    return factor_.factorise(tangent_->with(slope_));
   }
   double correct() {
     Vector right(static_cast<Index>(free_.size())), solution;
@@ -107,18 +132,48 @@ class Growth final : public numerics::NewtonProblem {
     return change_.norm();
   }
   void move(double part) { state_.q = accepted_ + part * change_; }
-  void accept(double) { accepted_ = state_.q; }
-  /// A correction below round-off ends the iteration where the residual keeps more of it.
-  numerics::NewtonVerdict judge(const numerics::NewtonIteration&) const {
-    return change_.norm() <= 1e-15 * state_.q.norm() ? numerics::NewtonVerdict::converged
-                                                     : numerics::NewtonVerdict::go_on;
+  void accept(double residual) {
+    accepted_ = state_.q;
+    has_stalled_ = residual > 0.5 * last_ && may_be_round_off(residual);
   }
-  bool may_be_halved(double) const { return !is_round_off_; }
+  /// As refinement of linear equations ends (Higham 2002, section 12.2): a correction that no longer halves the
+  /// residual repairs round-off alone.
+  numerics::NewtonVerdict judge(const numerics::NewtonIteration&) const {
+    return has_stalled_ ? numerics::NewtonVerdict::converged : numerics::NewtonVerdict::go_on;
+  }
+  bool may_be_halved(double) const { return !is_round_off_ && !may_be_enough_; }
   bool is_lower(double residual, double before, double part) const {
     return is_round_off_ || residual < (1.0 - 0.1 * part) * before;
   }
 
  private:
+  /// Newton's method to round-off of the residual.
+  bool is_balanced() {
+    const numerics::NewtonReport report = numerics::newton(*this, rules());
+    if (report.has_converged()) return true;
+    if (report.outcome != numerics::NewtonOutcome::diverged || !may_be_enough_) return false;
+    evaluate(true);  // no correction does better
+    return true;
+  }
+
+  /// Whether a residual is no larger than the sums at all coordinates may be off by together: one of m terms by m - 1
+  /// roundings of them, besides those of the terms.
+  bool may_be_round_off(double residual) const { return residual <= most_summands_ * epsilon * of_terms_; }
+
+  /// Of the residual at a free coordinate.
+  int most_summands() const {
+    std::vector<int> count(place_.size(), 1);  // the load
+    for (Index column = 0; column < system_.size(); ++column)
+      for (SparseMatrix::InnerIterator entry(system_.stiffness(), column); entry; ++entry)
+        ++count[static_cast<std::size_t>(entry.row())];
+    for (Index i = 0; i < system_.contact_count(); ++i)
+      for (const Index end : ends(i))
+        if (end != ground) count[static_cast<std::size_t>(end)] += i < system_.first_law() ? 1 : operations_of_a_law;
+    int most = 0;
+    for (const Index i : free_) most = std::max(most, count[static_cast<std::size_t>(i)]);
+    return most;
+  }
+
   static numerics::NewtonRules rules() {
     numerics::NewtonRules rules;
     rules.most_iterations = 60;
@@ -130,14 +185,6 @@ class Growth final : public numerics::NewtonProblem {
   std::array<Index, 2> ends(Index contact) const {
     const auto& both = system_.contacts()[static_cast<std::size_t>(contact)];
     return {both.first, both.second};
-  }
-
-  double of_contacts(Index coordinate) const {
-    double sum = 0.0;
-    for (Index i = 0; i < system_.contact_count(); ++i)
-      for (const Index end : ends(i))
-        if (end == coordinate) sum += std::abs(slope_[i]);
-    return sum;
   }
 
   /// Forces and slopes of all contacts where q is.
@@ -165,40 +212,9 @@ class Growth final : public numerics::NewtonProblem {
     }
   }
 
-  SparseMatrix tangent() const {
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto add = [&](Index row, Index column, double value) {
-      const Index i = place_[static_cast<std::size_t>(row)], j = place_[static_cast<std::size_t>(column)];
-      if (i != ground && j != ground) entries.emplace_back(i, j, value);
-    };
-    for (Index column = 0; column < system_.size(); ++column)
-      for (SparseMatrix::InnerIterator entry(system_.stiffness(), column); entry; ++entry)
-        add(entry.row(), column, entry.value());
-    for (Index i = 0; i < system_.contact_count(); ++i) {
-      const auto [first, second] = ends(i);
-      if (first != ground) add(first, first, slope_[i]);
-      if (second != ground) add(second, second, slope_[i]);
-      if (first == ground || second == ground) continue;
-      add(first, second, -slope_[i]);
-      add(second, first, -slope_[i]);
-    }
-    const auto n = static_cast<Index>(free_.size());
-    for (Index i = 0; i < n; ++i) entries.emplace_back(i, i, 0.0);  // the diagonal is always there
-    SparseMatrix matrix(n, n);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    return matrix;
-  }
-
-  SparseMatrix analysed_tangent() {
-    SparseMatrix matrix = tangent();
-    if (!is_analysed_) factor_.analyse(matrix);
-    is_analysed_ = true;
-    return matrix;
-  }
-
   bool is_stable() {
     return free_.empty() ||
-           factorise_resisting(analysed_tangent(), numerics::Pivots::positive, factor_, factorisations_, moving_);
+           factorise_resisting(tangent_->with(slope_), numerics::Pivots::positive, factor_, factorisations_, moving_);
   }
 
   /// The coordinates that a little more of the loads would move most.
@@ -217,10 +233,18 @@ class Growth final : public numerics::NewtonProblem {
   std::vector<Index> place_, free_;  // place of a coordinate among the free ones, and back
   std::vector<Index> moving_;        // places of the easiest motion
   numerics::OrderedFactor factor_;
-  bool is_analysed_ = false, is_round_off_ = false;
+  std::optional<ContactTangent> tangent_;
   int factorisations_ = 0;
   double share_ = 1.0;  // of the loads
   system::State state_;
+  Vector own_diagonal_;      // of the stiffness without contacts
+  SparseMatrix magnitude_;   // of its entries
+  Vector diagonal_, terms_;  // with contacts; the sizes of what the residual sums up
+  double of_terms_ = 0.0;    // measured as the residual is
+  int most_summands_ = 0;
+  double last_ = 0.0;           // the residual at the last iterate that was accepted
+  bool may_be_enough_ = false;  // likewise
+  bool is_round_off_ = false, has_stalled_ = false;
   Vector accepted_, change_, residual_, slope_, virgin_;
 };
 
