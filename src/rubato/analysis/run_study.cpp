@@ -63,7 +63,7 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
                           (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
   result.warnings = plan.warnings;
-  result.summary = fmt::format("frequency response, {}, {} line{} of {} points", route_name(plan.route.kind),
+  result.summary = fmt::format("frequency response, {}, {} line{} of {} points", integrate::route_name(plan.route.kind),
                                plan.sweep.lines(), plan.sweep.lines() == 1 ? "" : "s", plan.steps.size());
   return result;
 }
@@ -155,10 +155,10 @@ struct Plan {
     require_structure();
     const auto plan = std::make_shared<const FrequencyResponsePlan>(
         plan_frequency_response(analysis.name, analysis.where, response, input));
-    at_the_analysis([&] { (void)steady_solvers(plan->route).response(input.system, plan->request); });
+    at_the_analysis([&] { (void)integrate::steady_solvers(plan->route).response(input.system, plan->request); });
     return {outline(*plan, input.system), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_frequency_response(name, *plan, at, steady_solvers(plan->route), context);
+              return run_frequency_response(name, *plan, at, integrate::steady_solvers(plan->route), context);
             }};
   }
 

@@ -1,5 +1,5 @@
 #include <rubato/analysis/steady/damper_peaks.hpp>
-#include <rubato/numerics/eigen_symmetric.hpp>
+#include <rubato/integrate/steady/linear_limits.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +16,9 @@ std::vector<std::size_t> line_places(const DamperCurvePlan& plan) {
 /// With its place where it has one.
 std::string reason_of(const InvalidInput& fault) { return fault.where().file.empty() ? fault.message() : fault.what(); }
 
-/// Natural frequencies without sliders and with all of them stuck [rad/s].
-Vector natural_frequencies(const system::LocallyNonlinear& system) {
-  const Vector free = numerics::all_modes(system.stiffness(), system.mass()).eigenvalues;
-  if (system.slider_count() == 0) return free.cwiseMax(0.0).cwiseSqrt();
-  const Vector stuck = numerics::all_modes(system.stuck_stiffness(), system.mass()).eigenvalues;
-  Vector both(free.size() + stuck.size());
-  both << free, stuck;
-  return both.cwiseMax(0.0).cwiseSqrt();
-}
-
 }  // namespace
 
-DamperPeaks::DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+DamperPeaks::DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
                          const std::atomic<bool>& stop)
     : plan_(plan),
       input_(input),
@@ -56,7 +46,7 @@ void DamperPeaks::require_structure(double point) {
       std::make_unique<system::AssembledModel>(build_structure(input_.study, drive_.parameters_at(values_, point)));
   solver_ = make_.response(structure_->system, plan_.request);
   coarse_ = make_.coarse(structure_->system, plan_.request);
-  natural_ = natural_frequencies(structure_->system);
+  natural_ = integrate::natural_frequencies(structure_->system);
   structure_values_ = std::move(wanted);
 }
 

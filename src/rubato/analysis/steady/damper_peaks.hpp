@@ -4,7 +4,7 @@
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/analysis/steady/optimum.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
-#include <rubato/analysis/steady/steady_route.hpp>
+#include <rubato/integrate/steady/steady_route.hpp>
 
 #include <array>
 #include <atomic>
@@ -20,7 +20,7 @@ namespace rubato::analysis {
 class DamperPeaks final : public PeakFamily {
  public:
   /// @param stop  asks to give up: then there are no peaks
-  DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+  DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
               const std::atomic<bool>& stop);
 
   /// Goes on to a line of the sweep.
@@ -62,7 +62,7 @@ class DamperPeaks final : public PeakFamily {
 
   const DamperCurvePlan& plan_;
   const StudyInput& input_;
-  const SteadySolvers& make_;
+  const integrate::SteadySolvers& make_;
   const std::atomic<bool>& stop_;
 
   ParametricExcitation drive_;

@@ -46,8 +46,9 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, const SweepTables& ta
   return result;
 }
 
-PieceSolver::PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
-                         const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop)
+PieceSolver::PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input,
+                         const integrate::SteadySolvers& solvers, const SweepTables& tables, SweepProgress& progress,
+                         const std::atomic<bool>& stop)
     : plan_(plan), input_(input), make_(solvers), tables_(tables), progress_(progress), stop_(stop) {}
 
 PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
@@ -55,7 +56,7 @@ PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
     Lane lane;
     lane.drive =
         std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
-    if (plan_.route.kind == SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
+    if (plan_.route.kind == integrate::SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
     lane.values.resize(plan_.sweep.names().size());
     lanes_.push_back(std::move(lane));
   }
@@ -122,8 +123,8 @@ void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitatio
 /// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
 void PieceSolver::march_without_period(Lane& lane, double point, integrate::SteadyResponse& response) {
   const system::AssembledModel here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
-  response =
-      integrate::solve_quasi_periodic(here.system, marching_options(plan_.route), plan_.request, lane.drive->window());
+  response = integrate::solve_quasi_periodic(here.system, integrate::marching_options(plan_.route), plan_.request,
+                                             lane.drive->window());
   response.harmonics.setConstant(static_cast<Index>(plan_.observed.size()),
                                  static_cast<Index>(plan_.request.harmonics.size()), nothing);
 }

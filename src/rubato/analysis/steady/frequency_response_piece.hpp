@@ -72,7 +72,7 @@ class SweepProgress {
 class PieceSolver {
  public:
   /// @param stop  asks to leave, also in the midst of a point, which is then not among the rows
-  PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const SteadySolvers& solvers,
+  PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
               const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop);
 
   PieceResult solve(const SweepPiece& piece);
@@ -110,7 +110,7 @@ class PieceSolver {
 
   const FrequencyResponsePlan& plan_;
   const StudyInput& input_;
-  const SteadySolvers& make_;
+  const integrate::SteadySolvers& make_;
   const SweepTables& tables_;
   SweepProgress& progress_;
   const std::atomic<bool>& stop_;

@@ -89,10 +89,10 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
     for (std::size_t i = plan.frequencies.size(); i-- > 0;) plan.steps.push_back({i, true});
 }
 
-Route route_of(SteadyRoute::Kind kind) {
-  return kind == SteadyRoute::Kind::periodic           ? Route::periodic
-         : kind == SteadyRoute::Kind::harmonic_balance ? Route::harmonic_balance
-                                                       : Route::time_marching;
+Route route_of(integrate::SteadyRoute::Kind kind) {
+  return kind == integrate::SteadyRoute::Kind::periodic           ? Route::periodic
+         : kind == integrate::SteadyRoute::Kind::harmonic_balance ? Route::harmonic_balance
+                                                                  : Route::time_marching;
 }
 
 /// What is described, with the solver that is taken where none is named.
@@ -173,7 +173,7 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const std::string& title,
                   const Location& where) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
-  if (plan.route.kind == SteadyRoute::Kind::time_marching) at.allow_no_period();
+  if (plan.route.kind == integrate::SteadyRoute::Kind::time_marching) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
   Possibility possibility(title, where);
   for (const long line : {0L, plan.sweep.lines() - 1})

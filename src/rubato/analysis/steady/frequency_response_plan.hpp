@@ -1,10 +1,10 @@
 #pragma once
 
 #include <rubato/analysis/parameter_dependence.hpp>
-#include <rubato/analysis/steady/steady_route.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
+#include <rubato/integrate/steady/steady_route.hpp>
 
 #include <string>
 #include <vector>
@@ -26,7 +26,7 @@ struct FrequencyResponsePlan {
   ParameterDependence dependence;
   std::vector<Step> steps = {};  ///< of every line, in the order in which they are solved
 
-  SteadyRoute route = {};
+  integrate::SteadyRoute route = {};
   integrate::SteadyStart start = integrate::SteadyStart::unloaded;
   bool has_both_directions = false;
   std::vector<Observed> observed = {};

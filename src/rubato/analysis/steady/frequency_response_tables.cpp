@@ -1,6 +1,7 @@
 #include <rubato/analysis/steady/frequency_response_columns.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
+#include <rubato/results/columns/law_columns.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,14 +38,15 @@ std::string sweep_name(Sweep::Kind kind) {
 Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& input) {
   Attributes attributes{
       {"type", "frequency_response"},
-      {"solver", route_name(plan.route.kind)},
+      {"solver", integrate::route_name(plan.route.kind)},
       {"start", start_name(plan.start)},
       {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
       {"sweep", sweep_name(plan.sweep.kind())},
       {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
       {"frequencies", std::to_string(plan.frequencies.size())},
       {"lines", std::to_string(plan.sweep.lines())}};
-  if (plan.route.kind == SteadyRoute::Kind::time_marching) attributes.emplace_back("method", plan.route.method.name);
+  if (plan.route.kind == integrate::SteadyRoute::Kind::time_marching)
+    attributes.emplace_back("method", plan.route.method.name);
   if (plan.route.tolerance > 0.0) attributes.emplace_back("tolerance", fmt::format("{}", plan.route.tolerance));
   return attributes;
 }
@@ -146,7 +148,9 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
   sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},
               {"moment_offset", "N m", "moment at rest of a slider that never slips, fc - kT u"}, blocks);
-  add_laws(input.system);
+  const results::LawColumns laws(input.system, false);
+  laws.add({"dissipated", "J", "by a law over a period"}, blocks);
+  laws_ = laws.order();
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));
   blocks.push_back(scalar("input_work", "J", "work of the loads over a period"));
   blocks.push_back(scalar("transitions", "1", "from stick to slip and back, in a period"));
@@ -155,21 +159,6 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   blocks.push_back(scalar("error", "1", "estimated error of the amplitudes, relative to the largest"));
   blocks.push_back({"status", "", "what became of the point", "", {}, status_words()});
   width_ = layout_.row_width();
-}
-
-void ResponseTable::add_laws(const system::LocallyNonlinear& system) {
-  for (const bool is_rotation : {false, true}) {
-    std::vector<std::string> labels;
-    for (Index j = 0; j < system.law_count(); ++j) {
-      const auto& law = system.laws()[static_cast<std::size_t>(j)];
-      if (system.is_rotation(law.first == ground ? law.second : law.first) != is_rotation) continue;
-      labels.push_back(law.name);
-      laws_.push_back(j);
-    }
-    if (!labels.empty())
-      layout_.blocks.push_back(
-          {"dissipated", "J", "by a law over a period", is_rotation ? "rotational_law" : "law", labels});
-  }
 }
 
 void ResponseTable::add_place(const RowPlace& place, std::vector<double>& rows) const {

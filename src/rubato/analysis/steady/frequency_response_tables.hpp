@@ -40,7 +40,6 @@ class ResponseTable {
   void add_impossible(const RowPlace& place, std::vector<double>& rows) const;
 
  private:
-  void add_laws(const system::LocallyNonlinear& system);
   void add_place(const RowPlace& place, std::vector<double>& rows) const;
 
   results::TableLayout layout_;

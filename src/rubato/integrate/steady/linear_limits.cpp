@@ -1,4 +1,5 @@
 #include <rubato/integrate/steady/linear_limits.hpp>
+#include <rubato/numerics/eigen_symmetric.hpp>
 
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
@@ -94,6 +95,15 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
                    -excitation.limits[i], excitation.limits[i]);
   system.move_laws(at_rest, state);
   return state;
+}
+
+Vector natural_frequencies(const system::LocallyNonlinear& system) {
+  const Vector free = numerics::all_modes(system.stiffness(), system.mass()).eigenvalues;
+  if (system.slider_count() == 0) return free.cwiseMax(0.0).cwiseSqrt();
+  const Vector stuck = numerics::all_modes(system.stuck_stiffness(), system.mass()).eigenvalues;
+  Vector both(free.size() + stuck.size());
+  both << free, stuck;
+  return both.cwiseMax(0.0).cwiseSqrt();
 }
 
 }  // namespace rubato::integrate

@@ -15,4 +15,7 @@ system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system
 /// rest.
 system::State nearer_linear_limit(const system::LocallyNonlinear& system, const Excitation& excitation);
 
+/// Natural frequencies without sliders and with all of them stuck, one limit after the other [rad/s].
+Vector natural_frequencies(const system::LocallyNonlinear& system);
+
 }  // namespace rubato::integrate

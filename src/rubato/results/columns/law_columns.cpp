@@ -27,12 +27,28 @@ void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool
 }
 
 void LawColumns::add(TableLayout& layout) const {
+  for (const bool is_rotation : {false, true})
+    add_law_blocks(names_of(is_rotation ? of_rotations_ : of_displacements_), is_rotation, in_motion_, layout);
+}
+
+void LawColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {
   for (const bool is_rotation : {false, true}) {
-    std::vector<std::string> names;
-    for (const Index j : is_rotation ? of_rotations_ : of_displacements_)
-      names.push_back(system_.laws()[static_cast<std::size_t>(j)].name);
-    add_law_blocks(names, is_rotation, in_motion_, layout);
+    const std::vector<std::string> laws = names_of(is_rotation ? of_rotations_ : of_displacements_);
+    if (!laws.empty())
+      blocks.push_back({names.variable, names.unit, names.description, is_rotation ? "rotational_law" : "law", laws});
   }
+}
+
+std::vector<Index> LawColumns::order() const {
+  std::vector<Index> laws = of_displacements_;
+  laws.insert(laws.end(), of_rotations_.begin(), of_rotations_.end());
+  return laws;
+}
+
+std::vector<std::string> LawColumns::names_of(const std::vector<Index>& laws) const {
+  std::vector<std::string> names;
+  for (const Index j : laws) names.push_back(system_.laws()[static_cast<std::size_t>(j)].name);
+  return names;
 }
 
 void LawColumns::book(const system::State& before, const system::State& after) {

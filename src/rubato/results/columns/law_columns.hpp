@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/results/columns/column_group.hpp>
+#include <rubato/results/columns/observed_columns.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <string>
@@ -24,7 +24,14 @@ class LawColumns final : public ColumnGroup {
   void append(const system::State& state, std::vector<double>& row) override { append_since(state, state, row); }
   void append_since(const system::State& before, const system::State& state, std::vector<double>& row) override;
 
+  /// Adds one quantity with the same unit for all.
+  void add(const ColumnNames& names, std::vector<Block>& blocks) const;
+  /// The laws in the order of the columns.
+  std::vector<Index> order() const;
+
  private:
+  std::vector<std::string> names_of(const std::vector<Index>& laws) const;
+
   const system::LocallyNonlinear& system_;
   bool in_motion_;
   std::vector<Index> of_displacements_, of_rotations_;

@@ -10,30 +10,29 @@
 #include <memory>
 #include <string>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 /// Which solver of steady responses, and how it is asked to work.
 struct SteadyRoute {
   using Kind = model::FrequencyResponseDescription::Route;
 
   Kind kind = Kind::periodic;
-  double tolerance = 0.0;              ///< relative; 0: the route's own
-  integrate::Method method;            ///< of time marching, as the two below
-  long steps_per_period = 0;           ///< 0: chosen by the error
-  long max_periods = 0;                ///< 0: the route's own
-  integrate::LinearSweep linear = {};  ///< by which way large models find their linear responses
+  double tolerance = 0.0;     ///< relative; 0: the route's own
+  Method method;              ///< of time marching, as the two below
+  long steps_per_period = 0;  ///< 0: chosen by the error
+  long max_periods = 0;       ///< 0: the route's own
+  LinearSweep linear = {};    ///< by which way large models find their linear responses
 };
 
 /// As the study file calls it.
 std::string route_name(SteadyRoute::Kind kind);
 
 /// The options of time marching.
-integrate::TimeMarchingOptions marching_options(const SteadyRoute& route);
+TimeMarchingOptions marching_options(const SteadyRoute& route);
 
 /// Makes solvers of steady responses for one structure after another.
 struct SteadySolvers {
-  using Make = std::function<std::unique_ptr<integrate::SteadySolver>(const system::LocallyNonlinear&,
-                                                                      const integrate::SteadyRequest&)>;
+  using Make = std::function<std::unique_ptr<SteadySolver>(const system::LocallyNonlinear&, const SteadyRequest&)>;
   Make response;     ///< with friction
   Make free, stuck;  ///< the two linear limits
   Make coarse;       ///< with friction, to about a thousandth, at a small part of the cost
@@ -43,4 +42,4 @@ struct SteadySolvers {
 /// that of the free limit.
 SteadySolvers steady_solvers(const SteadyRoute& route);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

@@ -1,45 +1,44 @@
-#include <rubato/analysis/steady/steady_route.hpp>
 #include <rubato/integrate/steady/harmonic_balance.hpp>
 #include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/integrate/steady/periodic_solver.hpp>
+#include <rubato/integrate/steady/steady_route.hpp>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 namespace {
 
-using integrate::SteadyRequest;
 using system::LocallyNonlinear;
 
 bool is_linear(const LocallyNonlinear& system) { return system.slider_count() == 0 && system.law_count() == 0; }
 
-std::unique_ptr<integrate::SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
-                                                const SteadyRequest& request, bool stuck) {
-  return std::make_unique<integrate::LinearResponse>(
-      system, integrate::StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck), request, route.linear);
+std::unique_ptr<SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
+                                     const SteadyRequest& request, bool stuck) {
+  return std::make_unique<LinearResponse>(system, StuckSliders(static_cast<std::size_t>(system.slider_count()), stuck),
+                                          request, route.linear);
 }
 
-std::unique_ptr<integrate::SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,
-                                                  const SteadyRequest& request) {
-  integrate::PeriodicOptions options;
+std::unique_ptr<SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,
+                                       const SteadyRequest& request) {
+  PeriodicOptions options;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
-  return std::make_unique<integrate::PeriodicSolver>(system, request, options);
+  return std::make_unique<PeriodicSolver>(system, request, options);
 }
 
-std::unique_ptr<integrate::SteadySolver> harmonic_balance(const SteadyRoute& route, const LocallyNonlinear& system,
-                                                          const SteadyRequest& request) {
-  integrate::HarmonicBalanceOptions options;
+std::unique_ptr<SteadySolver> harmonic_balance(const SteadyRoute& route, const LocallyNonlinear& system,
+                                               const SteadyRequest& request) {
+  HarmonicBalanceOptions options;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
-  return std::make_unique<integrate::HarmonicBalanceSolver>(system, request, options);
+  return std::make_unique<HarmonicBalanceSolver>(system, request, options);
 }
 
-std::unique_ptr<integrate::SteadySolver> time_marching(const SteadyRoute& route, const LocallyNonlinear& system,
-                                                       const SteadyRequest& request) {
-  return std::make_unique<integrate::TimeMarchingSolver>(system, marching_options(route), request);
+std::unique_ptr<SteadySolver> time_marching(const SteadyRoute& route, const LocallyNonlinear& system,
+                                            const SteadyRequest& request) {
+  return std::make_unique<TimeMarchingSolver>(system, marching_options(route), request);
 }
 
 }  // namespace
 
-integrate::TimeMarchingOptions marching_options(const SteadyRoute& route) {
-  integrate::TimeMarchingOptions options;
+TimeMarchingOptions marching_options(const SteadyRoute& route) {
+  TimeMarchingOptions options;
   options.method = route.method;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
   if (route.steps_per_period > 0) options.steps_per_period = static_cast<int>(route.steps_per_period);
@@ -64,7 +63,7 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
     return is_linear(system) ? linear(route, system, request, false) : harmonic_balance({}, system, request);
   };
   solvers.response = [route](const LocallyNonlinear& system,
-                             const SteadyRequest& request) -> std::unique_ptr<integrate::SteadySolver> {
+                             const SteadyRequest& request) -> std::unique_ptr<SteadySolver> {
     if (route.kind == SteadyRoute::Kind::time_marching) return time_marching(route, system, request);
     if (is_linear(system)) return linear(route, system, request, false);
     return route.kind == SteadyRoute::Kind::periodic ? periodic(route, system, request)
@@ -73,4 +72,4 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
   return solvers;
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate
