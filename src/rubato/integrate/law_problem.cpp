@@ -163,6 +163,8 @@ void LawProblem::start(const system::State& from, const system::State& to) {
     for (const Index end : {system_.contacts()[static_cast<std::size_t>(i)].first,
                             system_.contacts()[static_cast<std::size_t>(i)].second})
       if (end != ground) reach_[j] = std::max(reach_[j], std::abs(from.q[end]));
+    for (const auto& share : system_.shares())
+      if (share.contact == i) reach_[j] = std::max(reach_[j], std::abs(share.weight * from.q[share.coordinate]));
   }
   force_ = from.slider_force;
 }

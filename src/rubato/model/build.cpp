@@ -15,6 +15,14 @@ namespace {
 
 using numerics::Parameters;
 
+/// Whether a coordinate is part of u.
+bool joins(const auto& contact, Index place) { return contact.first == place || contact.second == place; }
+bool joins(const LawBetween& law, Index place) {
+  return law.first == place || law.second == place ||
+         std::any_of(law.shares.begin(), law.shares.end(),
+                     [&](const Share& share) { return share.coordinate == place; });
+}
+
 /// Looks names up and evaluates numbers, with messages that name the part.
 class Builder {
  public:
@@ -329,9 +337,26 @@ class Builder {
                                        "coordinates, with between = [\"NAME\", \"ground\"]",
                                        part, description.joint));
       LawBetween law{description.name, description.kind, ground, ground, kind.make(description, parameters_, part)};
-      join(description.between, description.between_where, part, law.first, law.second);
+      if (description.shares.empty())
+        join(description.between, description.between_where, part, law.first, law.second);
+      else
+        law.shares = shares_of(description, part);
       model_.laws.push_back(std::move(law));
     }
+  }
+
+  /// u of a law as a sum of coordinates: those that are fixed drop out.
+  std::vector<Share> shares_of(const LawDescription& law, const std::string& part) const {
+    std::vector<Share> shares;
+    for (const auto& [name, weight] : law.shares) {
+      const double value = number(weight, fmt::format("{}: the share of \"{}\"", part, name));
+      if (name == "ground" || fixed_.count(name) > 0) continue;
+      const Index place = find(name, law.shares_where, part + " takes a share of");
+      if (value != 0.0) shares.push_back({place, value});
+    }
+    if (shares.empty())
+      throw InvalidInput(law.shares_where, fmt::format("{}: no coordinate that moves has a share in its u", part));
+    return shares;
   }
 
   void take_distributed_force(const DistributedForceDescription& description) {
@@ -397,7 +422,7 @@ class Builder {
       if (model_.position[place] != 0.0 || model_.velocity[place] != 0.0)
         refuse("it is given a position or velocity at the start; leave them out");
       const auto refuse_contact = [&](const auto& contact) {
-        if (contact.first == place || contact.second == place)
+        if (joins(contact, place))
           refuse(
               fmt::format("\"{}\" joins it: sliders and stops join what moves freely; put a light mass on a stiff "
                           "spring between, or take [base_motion], by which the ground itself moves",

@@ -86,6 +86,11 @@ void take_local_laws(MechanismAssembly& assembly) {
     const LawKind& kind = law_kind(description.kind);
     const std::string part = fmt::format("{} \"{}\"", description.kind, description.name);
     refuse_taken_name(assembly, description, part);
+    if (!description.shares.empty())
+      throw InvalidInput(description.shares_where,
+                         fmt::format("{}: shares are of the coordinates of structures, and this model has joints or "
+                                     "bodies; take `between` or `joint`",
+                                     part));
     LawCoordinate u;
     if (description.joint.empty())
       u = difference_of(assembly, description, part);

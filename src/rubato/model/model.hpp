@@ -45,12 +45,19 @@ struct Stop {
   }
 };
 
-/// A law on u = x_first - x_second; -force acts on first, +force on second.
+/// A coordinate times a weight, of which u is a sum.
+struct Share {
+  Index coordinate = 0;
+  double weight = 0.0;  ///< [-]; [m/rad] of a rotation in a displacement
+};
+
+/// A law on u = x_first - x_second + the sum of its shares; -force du/dx acts on each coordinate.
 struct LawBetween {
   std::string name;
   std::string kind;  ///< its table in the study file
   Index first = ground, second = ground;
   std::shared_ptr<const Law> law;
+  std::vector<Share> shares = {};  ///< instead of the ends
 };
 
 struct Force {

@@ -125,7 +125,10 @@ void eliminate_supports(LocallyNonlinear::Parts& parts, std::span<const model::P
   };
   for (auto& slider : parts.sliders) move_contact(slider);
   for (auto& stop : parts.stops) move_contact(stop);
-  for (auto& law : parts.laws) move_contact(law);
+  for (auto& law : parts.laws) {
+    move_contact(law);
+    for (model::Share& share : law.shares) move_end(share.coordinate);
+  }
   parts.start.q = free_entries(parts.start.q, split);
   parts.start.v = free_entries(parts.start.v, split);
   std::vector<std::string> names(static_cast<std::size_t>(f));

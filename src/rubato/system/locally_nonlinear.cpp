@@ -3,6 +3,7 @@
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -27,6 +28,7 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
   for (const auto& slider : parts_.sliders) contacts_.push_back({slider.first, slider.second});
   for (const auto& stop : parts_.stops) contacts_.push_back({stop.first, stop.second});
   for (const auto& law : parts_.laws) {
+    for (const model::Share& share : law.shares) shares_.push_back({contact_count(), share.coordinate, share.weight});
     contacts_.push_back({law.first, law.second});
     memory_start_.push_back(memory_size_);
     memory_size_ += law.law->memory_size();
@@ -51,6 +53,24 @@ void LocallyNonlinear::add_slider_forces(const Vector& slider_force, double fact
     if (ends.first != ground) out[ends.first] += factor * slider_force[i];
     if (ends.second != ground) out[ends.second] -= factor * slider_force[i];
   }
+  for (const ContactShare& share : shares_)
+    out[share.coordinate] += factor * share.weight * slider_force[share.contact];
+}
+
+std::vector<model::Share> LocallyNonlinear::column(Index contact) const {
+  std::vector<model::Share> column;
+  const Ends& ends = contacts_[static_cast<std::size_t>(contact)];
+  if (ends.first != ground) column.push_back({ends.first, 1.0});
+  if (ends.second != ground) column.push_back({ends.second, -1.0});
+  for (const ContactShare& share : shares_)
+    if (share.contact == contact) column.push_back({share.coordinate, share.weight});
+  return column;
+}
+
+bool LocallyNonlinear::is_law_of_rotations(Index law) const {
+  const std::vector<model::Share> joined = column(first_law() + law);
+  return std::all_of(joined.begin(), joined.end(),
+                     [&](const model::Share& share) { return is_rotation(share.coordinate); });
 }
 
 void LocallyNonlinear::set_stop_forces(State& state) const {
@@ -82,13 +102,10 @@ SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
                                              const std::vector<double>& coefficients) const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
-    const auto [first, second] = contacts_[i];
-    const double coefficient = coefficients[i];
-    if (first != ground) entries.emplace_back(first, first, coefficient);
-    if (second != ground) entries.emplace_back(second, second, coefficient);
-    if (first == ground || second == ground) continue;
-    entries.emplace_back(first, second, -coefficient);
-    entries.emplace_back(second, first, -coefficient);
+    const std::vector<model::Share> joined = column(static_cast<Index>(i));
+    for (const model::Share& row : joined)
+      for (const model::Share& other : joined)
+        entries.emplace_back(row.coordinate, other.coordinate, row.weight * other.weight * coefficients[i]);
   }
   SparseMatrix added(size(), size());
   added.setFromTriplets(entries.begin(), entries.end());

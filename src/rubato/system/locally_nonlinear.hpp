@@ -21,9 +21,9 @@ namespace rubato::system {
 ///   stops    fc = max(0, k (u - gap) + c du/dt) while u > gap, else 0
 ///   others   fc = a law of u, du/dt and t with a memory of its own (model::Law)
 ///
-/// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m] e_first - e_second of
-/// each contact: the sliders, then the stops, then the other laws. Immutable; integrators keep what moves in a State
-/// and in their workspace.
+/// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m], e_first - e_second of
+/// each slider and stop, a few shares of coordinates of each other law: the sliders, then the stops, then the laws.
+/// Immutable; integrators keep what moves in a State and in their workspace.
 class LocallyNonlinear final : public System {
  public:
   struct Parts {
@@ -64,6 +64,16 @@ class LocallyNonlinear final : public System {
     Index first = ground, second = ground;
   };
   const std::vector<Ends>& contacts() const { return contacts_; }
+  /// What laws add to the difference of their ends: a coordinate times a weight. By contacts, rising.
+  struct ContactShare {
+    Index contact = 0, coordinate = 0;
+    double weight = 0.0;
+  };
+  const std::vector<ContactShare>& shares() const { return shares_; }
+  /// The column of B of a contact: its coordinates with their weights, without the ground.
+  std::vector<model::Share> column(Index contact) const;
+  /// Whether u of a law is in [rad]: all that it joins are rotations.
+  bool is_law_of_rotations(Index law) const;
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const override { return parts_.coordinates; }
@@ -80,10 +90,14 @@ class LocallyNonlinear final : public System {
   const MovingSupports* supports() const { return parts_.supports ? &*parts_.supports : nullptr; }
   bool has_diagonal_mass() const { return has_diagonal_mass_; }
 
-  /// u = x_first - x_second of contact i [m]; of velocities, its rate
+  /// u of contact i [m]: x_first - x_second, and the shares of a law; of velocities, its rate
   double relative_displacement(Index i, const Vector& q) const {
     const Ends& s = contacts_[static_cast<std::size_t>(i)];
-    return (s.first == ground ? 0.0 : q[s.first]) - (s.second == ground ? 0.0 : q[s.second]);
+    double u = (s.first == ground ? 0.0 : q[s.first]) - (s.second == ground ? 0.0 : q[s.second]);
+    if (!shares_.empty())
+      for (const ContactShare& share : shares_)
+        if (share.contact == i) u += share.weight * q[share.coordinate];
+    return u;
   }
   /// fs of stop j at given displacements and velocities [N]
   double stop_force(Index j, const Vector& q, const Vector& v) const {
@@ -126,6 +140,7 @@ class LocallyNonlinear final : public System {
 
   Parts parts_;
   std::vector<Ends> contacts_;
+  std::vector<ContactShare> shares_;
   std::vector<Index> memory_start_;
   Index memory_size_ = 0;
   bool has_laws_of_time_ = false;

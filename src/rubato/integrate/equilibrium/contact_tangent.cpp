@@ -17,26 +17,26 @@ ContactTangent::ContactTangent(const system::LocallyNonlinear& system, const std
     for (SparseMatrix::InnerIterator entry(system.stiffness(), column); entry; ++entry)
       add(at(entry.row()), at(column), entry.value());
   for (Index i = 0; i < free; ++i) add(i, i, 0.0);
-  for (const auto& ends : system.contacts()) {
-    add(at(ends.first), at(ends.second), 0.0);
-    add(at(ends.second), at(ends.first), 0.0);
+  for (Index i = 0; i < system.contact_count(); ++i) {
+    const std::vector<model::Share> joined = system.column(i);
+    for (const model::Share& row : joined)
+      for (const model::Share& other : joined) add(at(row.coordinate), at(other.coordinate), 0.0);
   }
   matrix_.setFromTriplets(entries.begin(), entries.end());
   alone_.assign(matrix_.valuePtr(), matrix_.valuePtr() + matrix_.nonZeros());
-  slots_.reserve(system.contacts().size());
-  for (const auto& ends : system.contacts()) {
-    const Index first = at(ends.first), second = at(ends.second);
-    slots_.push_back({slot(first, first), slot(second, second), slot(first, second), slot(second, first)});
+  for (Index i = 0; i < system.contact_count(); ++i) {
+    const std::vector<model::Share> joined = system.column(i);
+    for (const model::Share& row : joined)
+      for (const model::Share& other : joined)
+        if (const Index to = slot(at(row.coordinate), at(other.coordinate)); to >= 0)
+          terms_.push_back({to, i, row.weight * other.weight});
   }
 }
 
 const SparseMatrix& ContactTangent::with(const Vector& slope) {
   double* values = matrix_.valuePtr();
   std::copy(alone_.begin(), alone_.end(), values);
-  for (std::size_t i = 0; i < slots_.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k)
-      if (slots_[i][k] >= 0)
-        values[slots_[i][k]] += k < 2 ? slope[static_cast<Index>(i)] : -slope[static_cast<Index>(i)];
+  for (const Term& term : terms_) values[term.slot] += term.weight * slope[term.contact];
   return matrix_;
 }
 

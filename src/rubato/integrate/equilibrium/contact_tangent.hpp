@@ -3,14 +3,13 @@
 #include <rubato/core/types.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
-#include <array>
 #include <vector>
 
 namespace rubato::integrate {
 
 /// The stiffness of a structure's free coordinates with the slopes of its contacts, whose pattern is made once.
 ///
-///   K + sum over contacts of slope b b^T,   b = e_first - e_second
+///   K + sum over contacts of slope b b^T,   b the column of B of a contact
 class ContactTangent {
  public:
   /// @param place  of each coordinate among the free ones, `ground` where it is held
@@ -26,8 +25,12 @@ class ContactTangent {
 
   SparseMatrix matrix_;
   std::vector<double> alone_;  // values without contacts
-  /// Places among the values of what each contact adds its slope to, twice, and takes it from; -1 where there is none.
-  std::vector<std::array<Index, 4>> slots_;
+  /// What the slope of a contact adds to a value.
+  struct Term {
+    Index slot, contact;
+    double weight;
+  };
+  std::vector<Term> terms_;
 };
 
 }  // namespace rubato::integrate

@@ -5,7 +5,6 @@
 #include <rubato/numerics/ordered_factor.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -36,6 +35,7 @@ class Growth final : public numerics::NewtonProblem {
     slope_.setZero(system.contact_count());
     change_.setZero(system.size());
     accepted_ = state_.q;
+    for (Index i = 0; i < system.contact_count(); ++i) columns_.push_back(system.column(i));
     own_diagonal_ = system.stiffness().diagonal();
     magnitude_ = system.stiffness().cwiseAbs();
     most_summands_ = most_summands();
@@ -95,13 +95,13 @@ class Growth final : public numerics::NewtonProblem {
     terms_.noalias() += magnitude_ * state_.q.cwiseAbs();
     for (Index i = 0; i < system_.contact_count(); ++i) {
       double reach = 0.0;
-      for (const Index end : ends(i))
-        if (end != ground) reach += std::abs(state_.q[end]);
-      for (const Index end : ends(i))
-        if (end != ground) {
-          diagonal_[end] += std::abs(slope_[i]);
-          terms_[end] += std::abs(state_.slider_force[i]) + std::abs(slope_[i]) * reach;
-        }
+      const auto& column = columns_[static_cast<std::size_t>(i)];
+      for (const auto& [place, weight] : column) reach += std::abs(weight * state_.q[place]);
+      for (const auto& [place, weight] : column) {
+        const double share = std::abs(weight);
+        diagonal_[place] += share * share * std::abs(slope_[i]);
+        terms_[place] += share * (std::abs(state_.slider_force[i]) + std::abs(slope_[i]) * reach);
+      }
     }
     is_round_off_ = true;
     double sum = 0.0, of_terms = 0.0;
@@ -167,8 +167,8 @@ class Growth final : public numerics::NewtonProblem {
       for (SparseMatrix::InnerIterator entry(system_.stiffness(), column); entry; ++entry)
         ++count[static_cast<std::size_t>(entry.row())];
     for (Index i = 0; i < system_.contact_count(); ++i)
-      for (const Index end : ends(i))
-        if (end != ground) count[static_cast<std::size_t>(end)] += i < system_.first_law() ? 1 : operations_of_a_law;
+      for (const auto& share : columns_[static_cast<std::size_t>(i)])
+        count[static_cast<std::size_t>(share.coordinate)] += i < system_.first_law() ? 1 : operations_of_a_law;
     int most = 0;
     for (const Index i : free_) most = std::max(most, count[static_cast<std::size_t>(i)]);
     return most;
@@ -180,11 +180,6 @@ class Growth final : public numerics::NewtonProblem {
     rules.most_halvings = 30;
     rules.memory = 3;
     return rules;
-  }
-
-  std::array<Index, 2> ends(Index contact) const {
-    const auto& both = system_.contacts()[static_cast<std::size_t>(contact)];
-    return {both.first, both.second};
   }
 
   /// Forces and slopes of all contacts where q is.
@@ -237,10 +232,11 @@ class Growth final : public numerics::NewtonProblem {
   int factorisations_ = 0;
   double share_ = 1.0;  // of the loads
   system::State state_;
-  Vector own_diagonal_;      // of the stiffness without contacts
-  SparseMatrix magnitude_;   // of its entries
-  Vector diagonal_, terms_;  // with contacts; the sizes of what the residual sums up
-  double of_terms_ = 0.0;    // measured as the residual is
+  Vector own_diagonal_;                             // of the stiffness without contacts
+  SparseMatrix magnitude_;                          // of its entries
+  Vector diagonal_, terms_;                         // with contacts; the sizes of what the residual sums up
+  double of_terms_ = 0.0;                           // measured as the residual is
+  std::vector<std::vector<model::Share>> columns_;  // of B
   int most_summands_ = 0;
   double last_ = 0.0;           // the residual at the last iterate that was accepted
   bool may_be_enough_ = false;  // likewise

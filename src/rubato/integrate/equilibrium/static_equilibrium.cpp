@@ -198,13 +198,11 @@ class StaticSolver {
     for (std::size_t i = 0; i < set.size(); ++i) {
       const double share = set[i] ? 1.0 : i < system_.sliders().size() ? 0.0 : open;
       if (share == 0.0) continue;
-      const auto [first, second] = system_.contacts()[i];
       const double stiffness = share * stiffness_of(i);
-      if (first != ground) add(first, first, stiffness);
-      if (second != ground) add(second, second, stiffness);
-      if (first == ground || second == ground) continue;
-      add(first, second, -stiffness);
-      add(second, first, -stiffness);
+      const std::vector<model::Share> joined = system_.column(static_cast<Index>(i));
+      for (const model::Share& row : joined)
+        for (const model::Share& other : joined)
+          add(row.coordinate, other.coordinate, row.weight * other.weight * stiffness);
     }
     const auto n = static_cast<Index>(free_.size());
     for (Index i = 0; i < n; ++i) entries.emplace_back(i, i, 0.0);  // the diagonal is always there

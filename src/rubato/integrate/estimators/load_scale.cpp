@@ -155,10 +155,9 @@ double size_under_loads(const system::LocallyNonlinear& system, double duration,
     const auto samples = samples_of(*system.laws()[j].law, duration, parts, bounds);
     const double largest = largest_of(samples);
     if (!(largest > 0.0)) continue;
-    const auto& ends = system.contacts()[static_cast<std::size_t>(system.first_law()) + j];
     force.setZero();
-    if (ends.first != ground) force[ends.first] -= largest;
-    if (ends.second != ground) force[ends.second] += largest;
+    for (const auto& [place, weight] : system.column(system.first_law() + static_cast<Index>(j)))
+      force[place] -= weight * largest;
     add(under(samples, largest));
   }
   return std::sqrt(squared);

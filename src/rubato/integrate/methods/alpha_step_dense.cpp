@@ -61,6 +61,7 @@ class DenseAlphaStep final : public AlphaStep {
       if (first_[static_cast<std::size_t>(i)] != ground) joins(first_[static_cast<std::size_t>(i)], i) += 1.0;
       if (second_[static_cast<std::size_t>(i)] != ground) joins(second_[static_cast<std::size_t>(i)], i) -= 1.0;
     }
+    for (const auto& share : system_.shares()) joins(share.coordinate, share.contact) += share.weight;
     // Eigen touches the first entry of what it solves for, and a model without loads or sliders has none.
     on_load_.resize(n_, terms_);
     on_contact_.resize(n_, m_);
@@ -145,6 +146,10 @@ class DenseAlphaStep final : public AlphaStep {
       if (b != ground) u -= qs_[b] + bh2 * a1_[b], rate -= vs_[b] + hg * a1_[b];
       laws_->free_displacement()[i] = u;
       laws_->free_velocity()[i] = rate;
+    }
+    for (const auto& [contact, place, weight] : system_.shares()) {
+      laws_->free_displacement()[contact] += weight * (qs_[place] + bh2 * a1_[place]);
+      laws_->free_velocity()[contact] += weight * (vs_[place] + hg * a1_[place]);
     }
   }
 

@@ -60,6 +60,7 @@ class SparseAlphaStep final : public AlphaStep {
     for (const auto& ends : system.contacts())
       for (const Index end : {ends.first, ends.second})
         if (end != ground) last.push_back(end);
+    for (const auto& share : system.shares()) last.push_back(share.coordinate);
     std::sort(last.begin(), last.end());
     last.erase(std::unique(last.begin(), last.end()), last.end());
     factor_.analyse(SparseMatrix(system.mass() + system.damping() + system.stiffness()), last);
@@ -69,6 +70,8 @@ class SparseAlphaStep final : public AlphaStep {
       first_.push_back(ends.first == ground ? ground : factor_.permuted(ends.first) - offset);
       second_.push_back(ends.second == ground ? ground : factor_.permuted(ends.second) - offset);
     }
+    shares_ = system.shares();
+    for (auto& share : shares_) share.coordinate = factor_.permuted(share.coordinate) - offset;
     order_.resize(static_cast<std::size_t>(n_));
     place_.resize(static_cast<std::size_t>(n_));
     for (Index i = 0; i < n_; ++i) {
@@ -98,6 +101,7 @@ class SparseAlphaStep final : public AlphaStep {
       if (first_[static_cast<std::size_t>(i)] != ground) joins(first_[static_cast<std::size_t>(i)], i) += 1.0;
       if (second_[static_cast<std::size_t>(i)] != ground) joins(second_[static_cast<std::size_t>(i)], i) -= 1.0;
     }
+    for (const auto& [contact, place, weight] : shares_) joins(place, contact) += weight;
     if (m_ == 0) return true;
     const Matrix per_force = end * (joins.transpose() * inverse * joins);
     if (laws_)
@@ -166,6 +170,10 @@ class SparseAlphaStep final : public AlphaStep {
       laws_->free_displacement()[i] =
           system_.relative_displacement(i, from.q) + (free_travel(first, from) - free_travel(second, from));
       laws_->free_velocity()[i] = free_velocity(first, from) - free_velocity(second, from);
+    }
+    for (const auto& [contact, place, weight] : shares_) {
+      laws_->free_displacement()[contact] += weight * free_travel(place, from);
+      laws_->free_velocity()[contact] += weight * free_velocity(place, from);
     }
   }
 
@@ -304,6 +312,7 @@ class SparseAlphaStep final : public AlphaStep {
       if (first != ground) out[first] += factor * force[i];
       if (second != ground) out[second] -= factor * force[i];
     }
+    for (const auto& [contact, place, weight] : shares_) out[place] += factor * weight * force[contact];
   }
 
   /// Displacement over the step of one of the last k places without the contacts' new forces.
@@ -326,9 +335,10 @@ class SparseAlphaStep final : public AlphaStep {
   double h_ = 0.0;
   std::optional<Rayleigh> rayleigh_;
   numerics::OrderedFactor factor_;
-  std::vector<Index> first_, second_;  // of each contact, among the last k places
-  std::vector<int> order_, place_;     // elimination place -> coordinate, and back
-  Vector mass_;                        // its diagonal; empty if it is not diagonal
+  std::vector<Index> first_, second_;                           // of each contact, among the last k places
+  std::vector<system::LocallyNonlinear::ContactShare> shares_;  // likewise
+  std::vector<int> order_, place_;                              // elimination place -> coordinate, and back
+  Vector mass_;                                                 // its diagonal; empty if it is not diagonal
   int products_ = 0;
   std::vector<int> start_, column_;  // rows in the order of elimination, columns likewise, those beyond the diagonal
   std::vector<int> new_start_, new_column_;  // those that no earlier row has

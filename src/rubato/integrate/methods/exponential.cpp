@@ -103,6 +103,10 @@ class ExponentialStepper final : public Stepper {
       laws_->free_displacement()[i] = u;
       laws_->free_velocity()[i] = rate / h_;
     }
+    for (const auto& [contact, place, weight] : system_.shares()) {
+      laws_->free_displacement()[contact] += weight * y1_[place];
+      laws_->free_velocity()[contact] += weight * y1_[n_ + place] / h_;
+    }
   }
 
   // In the time s = (t - t0)/h and with h v in place of v, so that the exponent is small numbers.
@@ -126,6 +130,7 @@ class ExponentialStepper final : public Stepper {
       if (ends.first != ground) inputs(ends.first, loads + i) += 1.0;
       if (ends.second != ground) inputs(ends.second, loads + i) -= 1.0;
     }
+    for (const auto& share : system_.shares()) inputs(share.coordinate, loads + share.contact) += share.weight;
     // Eigen's solve reads the first of no columns.
     const Matrix driven = inputs.cols() > 0 ? Matrix(h * h * mass.solve(inputs)) : Matrix(n_, 0);
     for (Index i = 0; i < loads + m_; ++i) {

@@ -13,10 +13,9 @@ constexpr double full = 0.05;           // part of C that is not zero, from whic
 
 // kT, or what the structure itself has at the ends of the slider, or anywhere: stiffer springs would take the digits of
 // the rest of Z.
-double holding_stiffness_of(const system::LocallyNonlinear::Ends& ends, double stiffness, const Vector& diagonal) {
+double holding_stiffness_of(const std::vector<model::Share>& column, double stiffness, const Vector& diagonal) {
   double of_structure = 0.0;
-  for (const Index end : {ends.first, ends.second})
-    if (end != ground) of_structure = std::max(of_structure, diagonal[end]);
+  for (const auto& [place, weight] : column) of_structure = std::max(of_structure, diagonal[place] / (weight * weight));
   if (!(of_structure > 0.0) && diagonal.size() > 0) of_structure = diagonal.maxCoeff();
   return of_structure > 0.0 ? std::min(stiffness, of_structure) : stiffness;
 }
@@ -27,8 +26,8 @@ double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index la
   const Vector memory = Vector::Zero(system.memory_size());
   const double at_rest =
       system.laws()[static_cast<std::size_t>(law)].law->at({}, memory.data() + system.memory_of(law)).by_u;
-  const auto& ends = system.contacts()[static_cast<std::size_t>(system.first_law() + law)];
-  const double held = holding_stiffness_of(ends, at_rest > 0.0 ? at_rest : infinity, diagonal);
+  const double held =
+      holding_stiffness_of(system.column(system.first_law() + law), at_rest > 0.0 ? at_rest : infinity, diagonal);
   return std::isfinite(held) ? held : 1.0;
 }
 
@@ -42,12 +41,11 @@ CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
   const Vector diagonal = system.stiffness().diagonal();
   for (Index i = 0; i < m; ++i) {
     const Index contact = i < sliders ? i : system.first_law() + i - sliders;
-    const auto& ends = system.contacts()[static_cast<std::size_t>(contact)];
-    if (ends.first != ground) columns_->sliders(ends.first, i) += 1.0;
-    if (ends.second != ground) columns_->sliders(ends.second, i) -= 1.0;
+    const std::vector<model::Share> column = system.column(contact);
+    for (const auto& [place, weight] : column) columns_->sliders(place, i) += weight;
     if (i < sliders) {
       columns_->slider_stiffness[i] = system.sliders()[static_cast<std::size_t>(i)].stiffness;
-      columns_->holding_stiffness[i] = holding_stiffness_of(ends, columns_->slider_stiffness[i], diagonal);
+      columns_->holding_stiffness[i] = holding_stiffness_of(column, columns_->slider_stiffness[i], diagonal);
     } else {
       columns_->slider_stiffness[i] = columns_->holding_stiffness[i] =
           holding_stiffness_of_law(system, i - sliders, diagonal);

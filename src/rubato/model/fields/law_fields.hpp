@@ -57,10 +57,14 @@ void fields(auto& visit, Like<LawDescription> auto& law) {
   visit.between("between", law.between, law.between_where, {});
   visit.text("joint", law.joint, {.says = "instead of between: it acts on what this joint leaves free"});
   visit.where_given(law.joint_where, "joint");
-  visit.exactly_one_of({"between", "joint"});
+  visit.by_name("shares", law.shares,
+                {.says = "instead of between: u as coordinates times weights, { x1 = 1.0, x2 = \"-cos(b)\" }"});
+  visit.where_given(law.shares_where, "shares");
+  visit.exactly_one_of({"between", "joint", "shares"});
   visit.check([&](auto& reader) {
-    if (!law.joint.empty()) reader.refuse_beside("joint", {"between"});
-    if (law.joint.empty() && law.between[0].empty()) reader.refuse_to_lack("between");
+    if (!law.joint.empty()) reader.refuse_beside("joint", {"between", "shares"});
+    if (!law.shares.empty()) reader.refuse_beside("shares", {"between"});
+    if (law.joint.empty() && law.shares.empty() && law.between[0].empty()) reader.refuse_to_lack("between");
   });
   for (std::size_t i = 0; i < kind.keys.size(); ++i) {
     const LawKey& key = kind.keys[i];

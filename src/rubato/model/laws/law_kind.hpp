@@ -36,8 +36,10 @@ struct LawDescription {
   std::string name;                    ///< for messages and results
   std::array<std::string, 2> between;  ///< the coordinates that it joins; empty where it acts on a joint
   std::array<Location, 2> between_where;
-  std::string joint;  ///< on whose coordinate it acts; empty: `between` counts
+  std::string joint;  ///< on whose coordinate it acts; empty: `between` or `shares` count
   Location joint_where;
+  std::vector<std::pair<std::string, Quantity>> shares;  ///< coordinates and their weights in u
+  Location shares_where;
   std::vector<Quantity> values;  ///< by the keys of its kind; formulas are the expression
   Location where;
 };

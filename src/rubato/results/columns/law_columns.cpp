@@ -6,9 +6,7 @@ namespace rubato::results {
 LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
     : system_(system), in_motion_(in_motion), dissipated_(Vector::Zero(system.law_count())) {
   for (Index j = 0; j < system.law_count(); ++j) {
-    const auto& law = system.laws()[static_cast<std::size_t>(j)];
-    const Index end = law.first == ground ? law.second : law.first;
-    (system.is_rotation(end) ? of_rotations_ : of_displacements_).push_back(j);
+    (system.is_law_of_rotations(j) ? of_rotations_ : of_displacements_).push_back(j);
   }
 }
 
