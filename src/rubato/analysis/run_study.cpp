@@ -1,3 +1,4 @@
+#include <rubato/analysis/law_damping.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
@@ -223,7 +224,17 @@ RunReport stopped() { return {RunStatus::interrupted, "interrupted before it had
 }  // namespace
 
 PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
-  return std::visit(Plan{analysis, input}, analysis.task);
+  PlannedAnalysis planned = std::visit(Plan{analysis, input}, analysis.task);
+  const bool moves = !std::holds_alternative<model::StaticDescription>(analysis.task);
+  if (const auto warning = moves ? warning_of_modal_damping(input) : std::nullopt) {
+    planned.outline.warnings.push_back(*warning);
+    planned.run = [run = std::move(planned.run), warning = *warning](const StudyInput& at, RunContext& context) {
+      RunReport report = run(at, context);
+      report.warnings.push_back(warning);
+      return report;
+    };
+  }
+  return planned;
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const PlannedAnalysis& planned,

@@ -80,7 +80,7 @@ void fields(auto& visit, Like<ModalDamping> auto& damping) {
   visit.where(damping.where, "modal_ratio");
   visit.one_or_more(
       "modal_ratio", damping.ratios, {},
-      {.required = true, .unit = "-", .says = "of the modes without sliders: one for all, or one a mode"});
+      {.required = true, .unit = "-", .says = "of the modes without sliders and laws: one for all, or one a mode"});
   visit.quantity("modes", damping.modes, {.says = "only so many of the lowest modes are damped"});
 }
 
