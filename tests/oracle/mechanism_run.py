@@ -35,6 +35,8 @@ SAMPLE = [0, 1, 3, 4, 5, 6, 8, 9, 10, 12, 13, 14, 16, 20, 21, 24, 25, 27, 29, 33
           50, 51, 53, 54, 55, 56, 57]
 # Those by which something was found.
 SAMPLE += [1004, 1131, 1190, 1222, 1348, 1352, 1358, 1367]
+# With Bouc-Wen elements and nonlinear springs, between coordinates and on joints.
+SAMPLE += [35002, 35005, 35013, 35020, 35029, 35035, 35037, 35040]
 OUTCOMES = ["agrees", "differs", "refused", "failed", "skipped"]
 
 
@@ -78,6 +80,8 @@ def verdicts(command, path, folder):
         signal.setitimer(signal.ITIMER_PROF, ORACLE_SECONDS)
         try:
             found, errors, _ = judge(study, analysis, folder)
+            if name in ("coarse", "half") and f'analysis "{name}": Newton\'s method failed in' in text:
+                raise Unreadable("equal steps were divided, which is told: nothing says how fast their errors fall")
             if name in ("coarse", "half"):
                 found = convergence(name, errors, of_pairs)
         except Unreadable as why:
