@@ -1,10 +1,7 @@
 #include "prepared_study.hpp"
 
+#include <rubato/integrate/kinds/assemble_kind.hpp>
 #include <rubato/io/read_study.hpp>
-#include <rubato/model/build_mechanism.hpp>
-#include <rubato/model/model.hpp>
-#include <rubato/system/assemble.hpp>
-#include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
 
@@ -48,21 +45,10 @@ std::vector<model::AnalysisDescription> chosen(const model::StudyDescription& st
   return analyses;
 }
 
-system::LocallyNonlinear assembled(const model::StudyDescription& study, const numerics::Parameters& parameters) {
+std::unique_ptr<const integrate::SystemKind> assembled(const model::StudyDescription& study,
+                                                       const numerics::Parameters& parameters) {
   try {
-    if (model::is_mechanism(study.model)) return system::LocallyNonlinear({});
-    return system::assemble(model::build(study.model, parameters));
-  } catch (const InvalidInput& fault) {
-    if (!fault.where().file.empty()) throw;
-    throw InvalidInput({study.file, 0, 0}, fault.message());
-  }
-}
-
-std::shared_ptr<const system::Mechanism> mechanism_of(const model::StudyDescription& study,
-                                                      const numerics::Parameters& parameters) {
-  if (!model::is_mechanism(study.model)) return nullptr;
-  try {
-    return std::make_shared<const system::Mechanism>(model::build_mechanism(study.model, parameters));
+    return integrate::assemble_kind(study.model, parameters);
   } catch (const InvalidInput& fault) {
     if (!fault.where().file.empty()) throw;
     throw InvalidInput({study.file, 0, 0}, fault.message());
@@ -85,14 +71,8 @@ std::unique_ptr<const PreparedStudy> prepare(const StudyOptions& options) {
   const auto analyses = chosen(study, options.only);
   std::string task = "to assemble the model";
   try {
-    auto prepared = std::make_unique<PreparedStudy>(PreparedStudy{study,
-                                                                  files,
-                                                                  overrides,
-                                                                  parameters,
-                                                                  analyses,
-                                                                  {},
-                                                                  assembled(study, parameters),
-                                                                  mechanism_of(study, parameters)});
+    auto prepared = std::make_unique<PreparedStudy>(
+        PreparedStudy{study, files, overrides, parameters, analyses, {}, assembled(study, parameters)});
     for (const auto& analysis : analyses) {
       task = fmt::format("to check the analysis \"{}\"", analysis.name);
       prepared->planned.push_back(analysis::plan_analysis(analysis, prepared->input()));

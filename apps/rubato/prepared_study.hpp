@@ -5,14 +5,9 @@
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/io/source_files.hpp>
 #include <rubato/model/description.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
 
 #include <memory>
 #include <vector>
-
-namespace rubato::system {
-class Mechanism;
-}
 
 namespace rubato::app {
 
@@ -22,12 +17,11 @@ struct PreparedStudy {
   io::SourceFiles files;  ///< that the study names
   numerics::Parameters overrides, parameters;
   std::vector<model::AnalysisDescription> analyses;
-  std::vector<analysis::PlannedAnalysis> planned;      ///< each of them
-  system::LocallyNonlinear system;                     ///< empty where the model is a mechanism
-  std::shared_ptr<const system::Mechanism> mechanism;  ///< null where it is a structure
+  std::vector<analysis::PlannedAnalysis> planned;  ///< each of them
+  std::unique_ptr<const integrate::SystemKind> kind;
 
   double expected_bytes() const;
-  analysis::StudyInput input() const { return {description, overrides, parameters, system, mechanism.get()}; }
+  analysis::StudyInput input() const { return {description, overrides, parameters, *kind}; }
 };
 
 /// Throws InvalidInput. What is planned refers to the rest of the study, which must stay where it is.

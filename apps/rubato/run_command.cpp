@@ -4,7 +4,6 @@
 #include "prepared_study.hpp"
 #include "progress_bar.hpp"
 
-#include <rubato/analysis/mechanism_size.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/io/folder_lock.hpp>
 #include <rubato/io/journal_file.hpp>
@@ -16,7 +15,6 @@
 #include <rubato/report/results_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
-#include <rubato/system/mechanism.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -133,34 +131,33 @@ class Runner {
     const std::size_t jobs =
         std::min<std::size_t>(static_cast<std::size_t>(std::max(options_.jobs, 1)), reports_.size());
     if (jobs == 1) {
-      work(study_.system, false);
+      work(*study_.kind, false);
       return reports_;
     }
     std::vector<std::jthread> threads;
-    // Loads hold the workspace of their formulas: each thread has a system of its own.
-    for (std::size_t i = 0; i < jobs; ++i) threads.emplace_back([this, system = study_.system] { work(system, true); });
+    for (std::size_t i = 0; i < jobs; ++i)
+      threads.emplace_back([this, own = study_.kind->for_thread()] { work(own ? *own : *study_.kind, true); });
     threads.clear();
     return reports_;
   }
 
  private:
-  void work(const system::LocallyNonlinear& system, bool has_neighbours) {
+  void work(const integrate::SystemKind& kind, bool has_neighbours) {
     for (std::size_t i = next_++; i < reports_.size() && !is_over_; i = next_++) {
-      reports_[i] = run_one(i, system, has_neighbours);
+      reports_[i] = run_one(i, kind, has_neighbours);
       if (reports_[i]->status == RunStatus::interrupted) is_over_ = true;
     }
   }
 
-  RunReport run_one(std::size_t index, const system::LocallyNonlinear& system, bool has_neighbours) {
+  RunReport run_one(std::size_t index, const integrate::SystemKind& kind, bool has_neighbours) {
     const model::AnalysisDescription& task = study_.analyses[index];
     ProgressBar progress(options_.quiet, has_neighbours);
     analysis::RunContext context{sink_, progress, stop_, options_.jobs, journals_[index].get()};
     RunReport report;
     bool is_refused = false;
     try {
-      report = analysis::run_analysis(
-          task, study_.planned[index],
-          {study_.description, study_.overrides, study_.parameters, system, study_.mechanism.get()}, context);
+      report = analysis::run_analysis(task, study_.planned[index],
+                                      {study_.description, study_.overrides, study_.parameters, kind}, context);
     } catch (const std::bad_alloc&) {
       report = {RunStatus::failed, "memory ran out; observe fewer coordinates, or take a smaller model", {}};
     } catch (const InvalidInput& fault) {
@@ -337,23 +334,10 @@ int run(const RunOptions& options) {
 }
 
 int check(const StudyOptions& options) {
-  const auto counted = [](Index count, const char* what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
   const std::unique_ptr<const PreparedStudy> prepared = prepare(options);
   const PreparedStudy& study = *prepared;
   tell_doubts(study);
-  if (study.mechanism) {
-    const analysis::MechanismSize size = analysis::size_of(*study.mechanism);
-    fmt::print("{}\n  {}, {} ({} of drives, {} redundant), {} left, {}\n", study.description.title,
-               counted(size.coordinates, "coordinate"), counted(size.constraints, "constraint"), size.drives,
-               size.redundant,
-               size.freedoms() == 1 ? "1 degree of freedom" : fmt::format("{} degrees of freedom", size.freedoms()),
-               counted(static_cast<Index>(study.mechanism->model().locks.size()), "lock"));
-  } else
-    fmt::print("{}\n  {}, {}{}\n", study.description.title, counted(study.system.size(), "coordinate"),
-               counted(study.system.slider_count(), "slider"),
-               study.system.stop_count() > 0 ? ", " + counted(study.system.stop_count(), "stop") : "");
+  fmt::print("{}\n  {}\n", study.description.title, study.kind->summary());
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
     fmt::print("  {}: {}\n", study.analyses[i].name, study.planned[i].outline.summary);

@@ -1,4 +1,5 @@
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
@@ -72,7 +73,8 @@ TEST(ResponseOfAFrame, HasRotationsInRadiansAndSlidersBetweenThemInTheirUnits) {
   const auto study = io::read_study_text(cantilever, "study.toml");
   const numerics::Parameters overrides, parameters = model::evaluate_parameters(study.parameters, overrides);
   const auto system = system::assemble(model::build(study.model, parameters));
-  const StudyInput input{study, overrides, parameters, system};
+  const integrate::StructureKind kind(system);
+  const StudyInput input{study, overrides, parameters, kind};
   testing::MemorySink sink;
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};

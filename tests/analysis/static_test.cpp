@@ -1,5 +1,6 @@
 #include <rubato/analysis/run_study.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include "support/assembled.hpp"
 #include "support/frame.hpp"
@@ -26,10 +27,10 @@ using testing::place_of;
 using testing::portal;
 
 /// Analyses of a system that no sweep makes again.
-StudyInput input_of(const system::LocallyNonlinear& system) {
+StudyInput input_of(const integrate::SystemKind& kind) {
   static const model::StudyDescription no_study;
   static const numerics::Parameters none;
-  return {no_study, none, none, system};
+  return {no_study, none, none, kind};
 }
 
 /// The frame cut free at node 1 is a bent cantilever: beam along x, column along y. Displacements at points of it under
@@ -377,7 +378,7 @@ TEST(StaticAnalysis, WritesDisplacementsAnglesAndReactions) {
   std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
   const model::AnalysisDescription analysis{"bent", model::StaticDescription{}, {}};
-  EXPECT_EQ(run_analysis(analysis, input_of(system), context).status, RunStatus::done);
+  EXPECT_EQ(run_analysis(analysis, input_of(integrate::StructureKind(system)), context).status, RunStatus::done);
   const auto& table = sink.tables.at("bent");
   ASSERT_EQ(table.rows.size(), 1u);
   ASSERT_EQ(table.rows[0].size(), table.layout.row_width());
@@ -403,7 +404,8 @@ TEST(TransientFromStatic, SwingsInItsModesWhenItIsLetGo) {
   testing::QuietProgress progress;
   std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
-  EXPECT_EQ(run_analysis({"swing", transient, {}}, input_of(system), context).status, RunStatus::done);
+  EXPECT_EQ(run_analysis({"swing", transient, {}}, input_of(integrate::StructureKind(system)), context).status,
+            RunStatus::done);
   const auto& table = sink.tables.at("swing");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> modes{Matrix(system.stiffness()), Matrix(system.mass())};
   const Vector start = find_equilibrium(system, system.held_displacements()).state.q;
@@ -430,7 +432,7 @@ TEST(TransientFromStatic, SwingsInItsModesWhenItIsLetGo) {
 
 std::string verdict(const model::AnalysisDescription& analysis, const system::LocallyNonlinear& system) {
   try {
-    (void)check_analysis(analysis, input_of(system));
+    (void)check_analysis(analysis, input_of(integrate::StructureKind(system)));
     return "accepted";
   } catch (const InvalidInput& fault) {
     return fault.message();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/build_mechanism.hpp>
 #include <rubato/system/mechanism.hpp>
@@ -26,8 +27,8 @@ inline RanMechanism run_mechanism_study(const std::string& text, std::size_t ana
   const auto study = io::read_study_text(text, "study.toml");
   const numerics::Parameters overrides, parameters = model::evaluate_parameters(study.parameters);
   const system::Mechanism mechanism(model::build_mechanism(study.model, parameters));
-  const system::LocallyNonlinear empty({});
-  const analysis::StudyInput input{study, overrides, parameters, empty, &mechanism};
+  const integrate::MechanismKind kind(mechanism);
+  const analysis::StudyInput input{study, overrides, parameters, kind};
   RanMechanism ran;
   QuietProgress progress;
   const std::atomic<bool> stop{false};

@@ -1,5 +1,4 @@
 #include <rubato/analysis/law_damping.hpp>
-#include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
@@ -8,10 +7,8 @@
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient_kind.hpp>
 #include <rubato/core/stopping.hpp>
-#include <rubato/integrate/kinds/mechanism_kind.hpp>
-#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/results/drawing/kind_drawing.hpp>
 #include <rubato/results/drawing/structure_drawing.hpp>
 
@@ -50,9 +47,9 @@ AnalysisOutline outline(const TransientPlan& plan) {
   return result;
 }
 
-AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::LocallyNonlinear& system) {
+AnalysisOutline outline(const FrequencyResponsePlan& plan, Index slider_count) {
   const auto observed = static_cast<double>(plan.observed.size());
-  const auto sliders = static_cast<double>(system.slider_count());
+  const auto sliders = static_cast<double>(slider_count);
   const double columns = static_cast<double>(plan.sweep.names().size()) + 10.0 + 3.0 * sliders +
                          observed * (5.0 + 2.0 * static_cast<double>(plan.request.harmonics.size()));
   double kept = 0.0;
@@ -69,9 +66,9 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, const system::Locally
   return result;
 }
 
-AnalysisOutline outline(const DamperCurvePlan& plan, const system::LocallyNonlinear& system) {
+AnalysisOutline outline(const DamperCurvePlan& plan, Index slider_count) {
   const double columns = static_cast<double>(plan.sweep.names().size()) + 8.0 +
-                         static_cast<double>(plan.observed.size()) + 2.0 * static_cast<double>(system.slider_count());
+                         static_cast<double>(plan.observed.size()) + 2.0 * static_cast<double>(slider_count);
   AnalysisOutline result;
   result.points = plan.points();
   result.expected_bytes = 36.0 * 2.0 * plan.points() * columns;  // peaks and limits are about as many again
@@ -95,16 +92,6 @@ AnalysisOutline outline(const ModesPlan& plan, const integrate::SystemKind& kind
   return result;
 }
 
-std::unique_ptr<TransientKind> transient_kind(const StudyInput& input) {
-  if (input.mechanism) return std::make_unique<MechanismTransient>(*input.mechanism);
-  return std::make_unique<StructureTransient>(input.system);
-}
-
-std::unique_ptr<integrate::SystemKind> kind_of(const StudyInput& input) {
-  if (input.mechanism) return std::make_unique<integrate::MechanismKind>(*input.mechanism);
-  return std::make_unique<integrate::StructureKind>(input.system);
-}
-
 /// Plans an analysis of its own kind.
 struct Plan {
   const model::AnalysisDescription& analysis;
@@ -112,43 +99,42 @@ struct Plan {
 
   PlannedAnalysis operator()(const model::TransientDescription& transient) const {
     const auto plan = std::make_shared<const TransientPlan>(
-        plan_transient(analysis.name, analysis.where, transient, *transient_kind(input), input.parameters));
+        plan_transient(analysis.name, analysis.where, transient, *transient_kind(input.kind), input.parameters));
     return {outline(*plan), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-              return transient_kind(at)->run(name, *plan, context);
+              return transient_kind(at.kind)->run(name, *plan, context);
             }};
   }
 
   PlannedAnalysis operator()(const model::StaticDescription& equilibrium) const {
-    const auto kind = kind_of(input);
-    const auto plan =
-        std::make_shared<const StaticPlan>(plan_static(analysis.name, analysis.where, equilibrium, *kind));
-    AnalysisOutline result{kind->is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
-                           100.0 * static_cast<double>(kind->system().size())};
+    const integrate::SystemKind& kind = input.kind;
+    const auto plan = std::make_shared<const StaticPlan>(plan_static(analysis.name, analysis.where, equilibrium, kind));
+    AnalysisOutline result{kind.is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
+                           100.0 * static_cast<double>(kind.system().size())};
     result.warnings = plan->warnings;
     return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_static(name, *plan, *kind_of(at), context);
+              return run_static(name, *plan, at.kind, context);
             }};
   }
 
   PlannedAnalysis operator()(const model::ModesDescription& modes) const {
-    const auto kind = kind_of(input);
-    const auto transients = transient_kind(input);
+    const integrate::SystemKind& kind = input.kind;
+    const auto transients = transient_kind(input.kind);
     const StudyTransients others{input.study.analyses, *transients};
     const auto plan = std::make_shared<const ModesPlan>(
-        plan_modes(analysis.name, analysis.where, modes, *kind, input.parameters, &others));
-    return {outline(*plan, *kind), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-              return run_modes(name, *plan, *kind_of(at), transient_kind(at).get(), context);
+        plan_modes(analysis.name, analysis.where, modes, kind, input.parameters, &others));
+    return {outline(*plan, kind), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+              return run_modes(name, *plan, at.kind, transient_kind(at.kind).get(), context);
             }};
   }
 
   PlannedAnalysis operator()(const model::MethodStudyDescription& study) const {
     require_structure();
-    check_method_study(analysis.name, analysis.where, study, input.system, input.parameters);
+    check_method_study(analysis.name, analysis.where, study, input.structure(), input.parameters);
     return {{"method study: errors, orders and curves of each method", 1e7},
             [study, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_method_study(name, study, at.system, at.parameters, context);
+              return run_method_study(name, study, at.structure(), at.parameters, context);
             }};
   }
 
@@ -156,8 +142,9 @@ struct Plan {
     require_structure();
     const auto plan = std::make_shared<const FrequencyResponsePlan>(
         plan_frequency_response(analysis.name, analysis.where, response, input));
-    at_the_analysis([&] { (void)integrate::steady_solvers(plan->route).response(input.system, plan->request); });
-    return {outline(*plan, input.system), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+    at_the_analysis([&] { (void)integrate::steady_solvers(plan->route).response(input.structure(), plan->request); });
+    return {outline(*plan, input.structure().slider_count()),
+            [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
               return run_frequency_response(name, *plan, at, integrate::steady_solvers(plan->route), context);
             }};
@@ -167,8 +154,9 @@ struct Plan {
     require_structure();
     const auto plan =
         std::make_shared<const DamperCurvePlan>(plan_damper_curve(analysis.name, analysis.where, curve, input));
-    at_the_analysis([&] { (void)damper_curve_solvers().response(input.system, plan->request); });
-    return {outline(*plan, input.system), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+    at_the_analysis([&] { (void)damper_curve_solvers().response(input.structure(), plan->request); });
+    return {outline(*plan, input.structure().slider_count()),
+            [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
               return run_damper_curve(name, *plan, at, damper_curve_solvers(), context);
             }};
@@ -176,7 +164,7 @@ struct Plan {
 
  private:
   void require_structure() const {
-    if (input.mechanism)
+    if (!input.kind.structure())
       throw InvalidInput(
           analysis.where,
           fmt::format("analysis \"{}\": a mechanism (bodies, joints, geometrically exact beams) is analysed "
@@ -206,8 +194,8 @@ RunReport concluded(const model::AnalysisDescription& analysis, RunReport report
                     RunContext& context) {
   // Modes have written the configuration about which they are.
   if (!std::holds_alternative<model::ModesDescription>(analysis.task))
-    results::draw_start(analysis.name, *kind_of(input), context.sink);
-  const std::size_t nodes = input.mechanism ? 0 : input.study.model.structure.nodes.size();
+    results::draw_start(analysis.name, input.kind, context.sink);
+  const std::size_t nodes = input.kind.is_constrained() ? 0 : input.study.model.structure.nodes.size();
   if (is_drawn(analysis) && nodes > 0 && nodes <= results::most_drawn_nodes)
     results::write_structure(analysis.name, model::build(input.study.model, input.parameters).structure, context.sink);
   auto notes = report.statistics;

@@ -1,5 +1,6 @@
 #include <rubato/analysis/exact_transient.hpp>
 #include <rubato/analysis/load_checks.hpp>
+#include <rubato/analysis/mechanism_transient.hpp>
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/structure_transient.hpp>
 #include <rubato/integrate/contact_events.hpp>
@@ -236,6 +237,21 @@ RunReport StructureTransient::run(const std::string& name, const TransientPlan& 
   if (std::holds_alternative<integrate::Exact>(plan.method.formula))
     return run_exact_transient(name, plan, system_, context);
   return TransientKind::run(name, plan, context);
+}
+
+std::unique_ptr<TransientKind> transient_kind(const integrate::SystemKind& kind) {
+  struct Maker final : integrate::KindVisitor {
+    std::unique_ptr<TransientKind> made;
+    void structure(const system::LocallyNonlinear& system) override {
+      made = std::make_unique<StructureTransient>(system);
+    }
+    void mechanism(const system::Mechanism& mechanism) override {
+      made = std::make_unique<MechanismTransient>(mechanism);
+    }
+  };
+  Maker maker;
+  kind.show(maker);
+  return std::move(maker.made);
 }
 
 }  // namespace rubato::analysis

@@ -1,11 +1,7 @@
 #pragma once
 
+#include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/model/description.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
-
-namespace rubato::system {
-class Mechanism;
-}
 
 namespace rubato::analysis {
 
@@ -15,8 +11,10 @@ struct StudyInput {
   const model::StudyDescription& study;
   const numerics::Parameters& overrides;   ///< values that replace those of the study (--set)
   const numerics::Parameters& parameters;  ///< all values, in the order of the study
-  const system::LocallyNonlinear& system;  ///< at these values; empty where the model is a mechanism
-  const system::Mechanism* mechanism = nullptr;
+  const integrate::SystemKind& kind;       ///< the system at these values
+
+  /// Of analyses that only structures have.
+  const auto& structure() const { return *kind.structure(); }
 };
 
 }  // namespace rubato::analysis

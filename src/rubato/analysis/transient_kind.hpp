@@ -7,6 +7,7 @@
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/energy_ledger.hpp>
 #include <rubato/integrate/events.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/integrate/march_failure.hpp>
 #include <rubato/results/columns/column_group.hpp>
 #include <rubato/system/system.hpp>
@@ -88,5 +89,8 @@ class TransientKind {
   /// march have a way of their own.
   virtual RunReport run(const std::string& name, const TransientPlan& plan, RunContext& context) const;
 };
+
+/// Transients of a system, which must outlive them.
+std::unique_ptr<TransientKind> transient_kind(const integrate::SystemKind& kind);
 
 }  // namespace rubato::analysis

@@ -20,6 +20,8 @@ namespace rubato::testing {
 namespace {
 
 using namespace analysis;
+using integrate::steady_solvers;
+using integrate::SteadySolvers;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 

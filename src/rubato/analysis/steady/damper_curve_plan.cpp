@@ -76,12 +76,12 @@ void plan_frequencies(DamperCurvePlan& plan, const Description& description, con
 
 void plan_objective(DamperCurvePlan& plan, const Description& description, const StudyInput& input,
                     const std::string& title, const Location& where) {
-  if (const auto reason = refusal(Route::damper_curve, input.system)) throw InvalidInput(where, title + *reason);
+  if (const auto reason = refusal(Route::damper_curve, input.structure())) throw InvalidInput(where, title + *reason);
   plan.objective = description.objective;
-  if (plan.objective == Description::Objective::dissipated && input.system.slider_count() == 0)
+  if (plan.objective == Description::Objective::dissipated && input.structure().slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),
                        title + "objective = \"dissipated\" needs sliders, and the model has none");
-  plan.observed = observed_or_all(description.observe, {input.system, input.system.supports()});
+  plan.observed = observed_or_all(description.observe, {input.structure(), input.structure().supports()});
   if (!plan.observed.empty() && plan.observed.front().is_rotation != plan.observed.back().is_rotation) {
     if (description.observe)
       throw InvalidInput(where,
@@ -164,12 +164,12 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
   plan_frequencies(plan, description, input, title, where);
   plan_objective(plan, description, input, title, where);
   plan.has_optimum = description.optimum && plan.values.size() > 1;
-  if (input.system.size() > integrate::largest_exact)
+  if (input.structure().size() > integrate::largest_exact)
     throw InvalidInput(
         where,
         fmt::format("{}damper curves are refined on exact periodic orbits, for up to {} coordinates; the model has "
                     "{}: reduce it, or sweep a frequency_response with solver = \"harmonic_balance\" over \"{}\"",
-                    title, integrate::largest_exact, input.system.size(), plan.parameter));
+                    title, integrate::largest_exact, input.structure().size(), plan.parameter));
   require_ends(plan, input, title, where);
   std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the range of frequencies"},
                                                          {parameter, "the range of the curve"}};

@@ -84,13 +84,13 @@ std::vector<std::string> damper_curve_columns() {
 DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurvePlan& plan, const StudyInput& input)
     : is_amplitude_(plan.objective == DamperCurvePlan::Objective::amplitude),
       observed_(plan.observed.size()),
-      sliders_(static_cast<std::size_t>(input.system.slider_count())) {
+      sliders_(static_cast<std::size_t>(input.structure().slider_count())) {
   const std::string objective = is_amplitude_ ? "amplitude" : "dissipated";
   const bool turns = !plan.observed.empty() && plan.observed.front().is_rotation;
   const std::string amplitude_unit = turns ? "rad" : "m", unit = is_amplitude_ ? amplitude_unit : "J";
   std::vector<std::string> labels, sliders;
   for (const Observed& one : plan.observed) labels.push_back(one.label);
-  for (const auto& slider : input.system.sliders()) sliders.push_back(slider.name);
+  for (const auto& slider : input.structure().sliders()) sliders.push_back(slider.name);
   const std::vector<Block> keys = key_blocks(plan);
   const Block frequency = scalar("angular_frequency", "rad/s", "where over frequency the objective is largest");
   const Block largest = words("largest", "which amplitude is largest", labels);

@@ -186,7 +186,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
                                  const integrate::SteadySolvers& solvers, RunContext& context) {
   const SweepTables layouts{{name, plan, input}, {name, plan}, {name, plan, input}};
   context.progress.begin(name, plan.points(), "points");
-  SweepProgress progress(context.progress, input.system.size() > 100 ? 1 : 64);
+  SweepProgress progress(context.progress, input.structure().size() > 100 ? 1 : 64);
   tbb::enumerable_thread_specific<std::unique_ptr<PieceSolver>> workers;
   const auto worker = [&]() -> PieceSolver& {
     auto& mine = workers.local();

@@ -98,7 +98,7 @@ Route route_of(integrate::SteadyRoute::Kind kind) {
 /// What is described, with the solver that is taken where none is named.
 Description with_route(Description description, const StudyInput& input) {
   const bool is_named = description.route_where.line > 0;
-  if (!is_named && description.route == Description::Route::periodic && input.system.law_count() > 0)
+  if (!is_named && description.route == Description::Route::periodic && input.structure().law_count() > 0)
     description.route = Description::Route::harmonic_balance;
   return description;
 }
@@ -106,9 +106,9 @@ Description with_route(Description description, const StudyInput& input) {
 void plan_route(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                 const std::string& title, const Location& where) {
   const Route route = route_of(description.route);
-  const auto reason = refusal(route, input.system);
+  const auto reason = refusal(route, input.structure());
   if (reason) throw InvalidInput(place(description.route_where, where), title + *reason);
-  if (const auto of_time = refusal_of_time(input.system)) throw InvalidInput(where, title + *of_time);
+  if (const auto of_time = refusal_of_time(input.structure())) throw InvalidInput(where, title + *of_time);
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");
@@ -135,7 +135,7 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
 
 void plan_request(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                   const std::string& title, const Location& where) {
-  plan.observed = observed_or_all(description.observe, {input.system, input.system.supports()});
+  plan.observed = observed_or_all(description.observe, {input.structure(), input.structure().supports()});
   for (const auto& observed : plan.observed) plan.request.observed.push_back({observed.first, observed.second});
   plan.request.harmonics = {1};
   for (const auto& quantity : description.harmonics) {

@@ -115,7 +115,7 @@ std::vector<std::string> reserved_columns() {
 
 ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
     : layout_{name, "", "point", {}, attributes_of(plan, input)},
-      sliders_(results::SliderColumns(input.system).order()),
+      sliders_(results::SliderColumns(input.structure()).order()),
       has_direction_(plan.has_both_directions),
       has_fundamental_(plan.has_other_fundamental) {
   auto& blocks = layout_.blocks;
@@ -143,12 +143,12 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   observe({"mean", "m", "mean over a period"}, {"angle_mean", "rad", "mean over a period"});
   observe({"rms", "m", "root of the mean square over a period"},
           {"angle_rms", "rad", "root of the mean square over a period"});
-  const results::SliderColumns sliders(input.system);
+  const results::SliderColumns sliders(input.structure());
   sliders.add({"dissipated", "J", "friction work over a period"}, blocks);
   sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
   sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},
               {"moment_offset", "N m", "moment at rest of a slider that never slips, fc - kT u"}, blocks);
-  const results::LawColumns laws(input.system, false);
+  const results::LawColumns laws(input.structure(), false);
   laws.add({"dissipated", "J", "by a law over a period"}, blocks);
   laws_ = laws.order();
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));

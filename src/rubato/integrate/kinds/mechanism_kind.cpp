@@ -10,6 +10,29 @@
 #include <cmath>
 
 namespace rubato::integrate {
+namespace {
+
+std::string counted(Index count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string MechanismKind::summary() const {
+  const model::Mechanism& model = mechanism_.model();
+  const auto rows = [&](int joint) { return joint < 0 ? 0 : model.joints[static_cast<std::size_t>(joint)]->rows(); };
+  Index constraints = mechanism_.constraint_count(), of_drives = 0;
+  for (const auto& lock : model.locks) constraints -= rows(lock.joint);
+  for (const auto& friction : model.frictions) constraints -= rows(friction.sticking_joint);
+  for (const auto& drive : model.drives) of_drives += rows(drive.joint);
+  const auto equations = mechanism_.equations();
+  const auto redundant = static_cast<Index>(make_consistent(*equations, mechanism_.start()).redundant.size());
+  const Index left = mechanism_.size() - (constraints - redundant);
+  return fmt::format("{}, {} ({} of drives, {} redundant), {} left, {}", counted(mechanism_.size(), "coordinate"),
+                     counted(constraints, "constraint"), of_drives, redundant,
+                     left == 1 ? "1 degree of freedom" : fmt::format("{} degrees of freedom", left),
+                     counted(static_cast<Index>(model.locks.size()), "lock"));
+}
 
 std::vector<model::Held> MechanismKind::held_displacements(const StaticRequest& request) const {
   const auto& wanted = request.description.displacements;

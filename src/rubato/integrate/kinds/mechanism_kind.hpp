@@ -3,6 +3,9 @@
 #include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/system/mechanism.hpp>
 
+#include <memory>
+#include <utility>
+
 namespace rubato::integrate {
 
 /// A mechanism: bodies and beams that joints hold.
@@ -10,10 +13,15 @@ class MechanismKind final : public SystemKind {
  public:
   /// @param mechanism  must outlive this
   explicit MechanismKind(const system::Mechanism& mechanism) : mechanism_(mechanism) {}
+  explicit MechanismKind(std::unique_ptr<const system::Mechanism> mechanism)
+      : owned_(std::move(mechanism)), mechanism_(*owned_) {}
 
   const system::System& system() const override { return mechanism_; }
   bool is_constrained() const override { return true; }
   void show(KindVisitor& visitor) const override { visitor.mechanism(mechanism_); }
+  /// Rows of locks that are open and of friction count nothing. What is left is what Gruebler and Kutzbach count,
+  /// coordinates less rows, corrected by the rank of the start; drives hold what they drive.
+  std::string summary() const override;
 
   std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
   /// Assembles the mechanism; throws where it cannot be.
@@ -29,6 +37,7 @@ class MechanismKind final : public SystemKind {
   std::vector<std::string> drives() const override;
 
  private:
+  std::unique_ptr<const system::Mechanism> owned_;  // null: it is lent
   const system::Mechanism& mechanism_;
 };
 

@@ -36,7 +36,16 @@ std::vector<std::string> slipping(const system::State& state, const system::Loca
   return names;
 }
 
+std::string counted(Index count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 }  // namespace
+
+std::string StructureKind::summary() const {
+  return fmt::format("{}, {}{}", counted(system_.size(), "coordinate"), counted(system_.slider_count(), "slider"),
+                     system_.stop_count() > 0 ? ", " + counted(system_.stop_count(), "stop") : "");
+}
 
 std::vector<model::Held> StructureKind::held_displacements(const StaticRequest& request) const {
   const model::StaticDescription& description = request.description;

@@ -3,6 +3,9 @@
 #include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <memory>
+#include <utility>
+
 namespace rubato::integrate {
 
 /// A linear structure with laws between its coordinates.
@@ -10,11 +13,19 @@ class StructureKind final : public SystemKind {
  public:
   /// @param system  must outlive this
   explicit StructureKind(const system::LocallyNonlinear& system) : system_(system) {}
+  explicit StructureKind(std::unique_ptr<const system::LocallyNonlinear> system)
+      : owned_(std::move(system)), system_(*owned_) {}
 
   const system::System& system() const override { return system_; }
   const system::MovingSupports* supports() const override { return system_.supports(); }
   bool is_constrained() const override { return false; }
   void show(KindVisitor& visitor) const override { visitor.structure(system_); }
+  const system::LocallyNonlinear* structure() const override { return &system_; }
+  std::string summary() const override;
+  /// Loads hold the workspace of their formulas.
+  std::unique_ptr<const SystemKind> for_thread() const override {
+    return std::make_unique<StructureKind>(std::make_unique<const system::LocallyNonlinear>(system_));
+  }
 
   std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
   system::State static_start(const Location&, std::vector<std::string>&) const override { return system_.start(); }
@@ -28,6 +39,7 @@ class StructureKind final : public SystemKind {
   FreeMotions free_motions(const system::State& state, Index limit, Index count) const override;
 
  private:
+  std::unique_ptr<const system::LocallyNonlinear> owned_;  // null: it is lent
   const system::LocallyNonlinear& system_;
 };
 

@@ -7,6 +7,7 @@
 #include <rubato/system/moving_supports.hpp>
 #include <rubato/system/system.hpp>
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,6 +58,12 @@ class SystemKind {
   /// Whether joints hold it: it is a mechanism.
   virtual bool is_constrained() const = 0;
   virtual void show(KindVisitor& visitor) const = 0;
+  /// The structure, for analyses that only structures have; null where it is none.
+  virtual const system::LocallyNonlinear* structure() const { return nullptr; }
+  /// How much it is and how much it may move, in a line: "5 coordinates, 2 sliders".
+  virtual std::string summary() const = 0;
+  /// The same for another thread, where the system has workspaces; null: it is shared.
+  virtual std::unique_ptr<const SystemKind> for_thread() const { return nullptr; }
 
   // Statics
   /// The displacements that a study holds; refuses keys that do not go with the kind.
