@@ -114,8 +114,10 @@ class WithLaws(Generator):
             step["events"] = "locate"
         automatic = {"name": "automatic", **transient, "step": step}
         if self.chance(0.4):
-            automatic["method"] = self.method(self.random.choice(["average_acceleration", "hht", "wbz", "linear_acceleration", "dormand_prince",
-                                                                  "bogacki_shampine", "generalized_alpha", "newmark", "central_difference"]))
+            method = self.random.choice(["average_acceleration", "hht", "wbz", "linear_acceleration", "dormand_prince",
+                                         "bogacki_shampine", "generalized_alpha", "newmark", "central_difference"])
+            if "bouc_wen" not in self.tables or method not in ("dormand_prince", "bogacki_shampine"):  # pairs are refused
+                automatic["method"] = self.method(method)
         if self.chance(0.15):
             automatic["output"] = self.random.choice([{"every": 2}, {"interval": self.duration / 50}])
         if self.chance(0.85):

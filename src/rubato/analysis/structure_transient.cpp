@@ -164,8 +164,17 @@ void StructureTransient::take_equal_steps(const TransientRequest& request, Trans
                                         plan.step, plan.method.name, limit.step, mode));
 }
 
-void StructureTransient::plan_events(const std::string& /*title*/, const model::StepDescription& description,
+void StructureTransient::plan_events(const std::string& title, const model::StepDescription& description,
                                      const TransientPlan& plan, integrate::StepPlan& step) const {
+  // Stages of such a step follow a law with a memory without a turn, and both solutions of the pair err alike.
+  if (std::holds_alternative<integrate::RungeKutta>(plan.method.formula))
+    for (const model::LawBetween& law : system_.laws())
+      if (law.law->memory_size() > 0)
+        throw InvalidInput(
+            description.where,
+            fmt::format("{}{} with steps that choose themselves does not see where the motion of \"{}\" turns within "
+                        "a step, nor does its error estimate; take \"generalized_alpha\", or equal steps",
+                        title, plan.method.name, law.name));
   // A pair is of so high an order that a transition within a step is all of its error, and its estimate does not see
   // it.
   const bool is_pair = std::holds_alternative<integrate::RungeKutta>(plan.method.formula);

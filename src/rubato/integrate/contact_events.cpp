@@ -6,7 +6,7 @@
 namespace rubato::integrate {
 
 ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const system::State& start,
-                             const StructureTimeline* located)
+                             StructureTimeline* located)
     : system_(system), located_(located), parts_(static_cast<std::size_t>(system.first_law()), 0) {
   events_.are_of_contacts = true;
   const Index sliders = system.slider_count();
@@ -19,15 +19,17 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
     events_.parts.push_back(i < sliders ? system.sliders()[contact].name
                                         : system.stops()[static_cast<std::size_t>(i - sliders)].name);
     watched_.push_back({i, limit, i < sliders ? -limit : -none, 0});
-    watched_.back().branch = branch_of(watched_.back(), start);
+    watched_.back().branch = located ? located->branch(i, start) : branch_of(watched_.back(), start);
     if (i >= sliders && watched_.back().branch != 0) note_stop(i, start, true);
   }
   events_.at_start = events_.all.size();
 }
 
-bool ContactEvents::accepted(const system::State& /*before*/, const system::State& after) {
-  for (Watched& one : watched_)
-    if (const int now = branch_of(one, after); now != one.branch) note_change(one, now, after);
+bool ContactEvents::accepted(const system::State& before, const system::State& after) {
+  for (Watched& one : watched_) {
+    const int now = located_ ? located_->branch_after(one.contact, before, after) : branch_of(one, after);
+    if (now != one.branch) note_change(one, now, after);
+  }
   return true;
 }
 

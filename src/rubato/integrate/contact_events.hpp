@@ -20,7 +20,7 @@ class ContactEvents final : public Observer {
   /// Stops that are closed at the start are told as if they closed then.
   /// @param located  of a march whose steps end at transitions; null: of one that passes them
   ContactEvents(const system::LocallyNonlinear& system, const system::State& start,
-                const StructureTimeline* located = nullptr);
+                StructureTimeline* located = nullptr);
 
   bool accepted(const system::State& before, const system::State& after) override;
   /// A slider is known to have changed.
@@ -36,7 +36,6 @@ class ContactEvents final : public Observer {
     int branch = 0;                           ///< as StructureTimeline::branch() has it
   };
   int branch_of(const Watched& one, const system::State& state) const {
-    if (located_) return located_->branch(one.contact, state);
     const double force = state.slider_force[one.contact];
     return (force >= one.slips_up ? 1 : 0) - (force <= one.slips_down ? 1 : 0);
   }
@@ -44,7 +43,7 @@ class ContactEvents final : public Observer {
   void note_stop(Index contact, const system::State& state, bool closes);
 
   const system::LocallyNonlinear& system_;
-  const StructureTimeline* located_;
+  StructureTimeline* located_;
   std::vector<Watched> watched_;    // what can change
   std::vector<std::size_t> parts_;  // place of each slider and stop among the names
   Events events_;

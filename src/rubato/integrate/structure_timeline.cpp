@@ -201,6 +201,20 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
   return {1.0, 0.0};
 }
 
+int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {
+  const Watch watch = watch_of(contact, before);
+  if (watch == Watch::nothing || !has_ended_at(contact, before, after)) return branch(contact, after);
+  switch (watch) {
+    case Watch::limit:
+      return after.slider_force[contact] > 0.0 ? 1 : -1;
+    case Watch::closing:
+    case Watch::pushing_again:
+      return 1;
+    default:
+      return 0;
+  }
+}
+
 /// The share of the step at which a guard that is negative at its end vanishes on the path.
 double StructureTimeline::share_of(Index contact, const system::State& from, const system::State& to) const {
   const Path path = path_of(contact, from, to);

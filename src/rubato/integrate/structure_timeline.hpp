@@ -31,6 +31,9 @@ class StructureTimeline final : public Timeline {
   /// The branch on which a march goes on from a state: of a slider the side to which it slips, 1 or -1; of a stop that
   /// is closed 1; else 0.
   int branch(Index contact, const system::State& state) const;
+  /// The same at the end of a step, which may have ended at a transition: forces and velocities there are zero but for
+  /// what locating leaves, of either sign.
+  int branch_after(Index contact, const system::State& before, const system::State& after);
 
  private:
   enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again };

@@ -3,6 +3,7 @@
 #include <rubato/system/own_system.hpp>
 
 #include <fmt/format.h>
+#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <limits>
@@ -73,6 +74,7 @@ class OwnEquations final : public ConstrainedEquations {
   void residual(Vector& force, Vector& constraint) override {
     force.resize(n_);
     of_.force(*state_, side_, force);
+    require_size(force, n_, "force()");
     constraints(constraint);
   }
 
@@ -107,7 +109,11 @@ class OwnEquations final : public ConstrainedEquations {
     constraint.resize(c_);
     if (c_ == 0) return;
     of_.constraint(*state_, constraint);
+    require_size(constraint, c_, "constraint()");
     of_.jacobian(*state_, jacobian_);
+    if (jacobian_.rows() != c_ || jacobian_.cols() != n_)
+      throw InvalidInput(fmt::format("jacobian() writes {} x {} numbers for {} constraints on {} coordinates",
+                                     jacobian_.rows(), jacobian_.cols(), c_, n_));
     for (Index r = 0; r < c_; ++r) {
       if (of_.is_active(r, *state_)) continue;
       constraint[r] = 0.0;
@@ -140,6 +146,10 @@ class OwnEquations final : public ConstrainedEquations {
   }
 
  private:
+  static void require_size(const Vector& written, Index size, const char* by) {
+    if (written.size() != size)
+      throw InvalidInput(fmt::format("{} writes {} numbers instead of {}", by, written.size(), size));
+  }
   void shut_open_rows(Vector& values) const {
     for (Index r = 0; r < c_; ++r)
       if (!of_.is_active(r, *state_)) values[r] = 0.0;
@@ -169,6 +179,11 @@ OwnSystem::OwnSystem(std::vector<std::string> coordinates, SparseMatrix mass, Ve
     if (!(diagonal[i] > 0.0))
       throw InvalidInput(
           fmt::format("\"{}\" has no mass ({}); give it one", coordinates_[static_cast<std::size_t>(i)], diagonal[i]));
+  const Matrix dense(mass_);
+  if (!(dense - dense.transpose()).isZero(1e-12 * diagonal.maxCoeff()) ||
+      Eigen::LLT<Matrix>(dense).info() != Eigen::Success)
+    throw InvalidInput("the mass of a system must be symmetric and positive definite");
+  reference_ = std::sqrt(diagonal.sum()) * q.cwiseAbs().maxCoeff();
   start_.q = std::move(q);
   start_.v = std::move(v);
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);

@@ -16,7 +16,8 @@ namespace rubato::system {
 ///
 /// with the constant mass M. What must be written is force(), and with constraints constraint() and jacobian(); slopes
 /// that are not written are found by central differences of these, to some nine digits, in the sizes that q and v have
-/// at the time. Matrices are dense: for some hundred coordinates.
+/// at the time: write second_rate() where the origin is far from what moves. Matrices are dense: for some hundred
+/// coordinates.
 ///
 /// Branches of one's own (engaged, open, broken) are numbers in State::phase: guards tell when one ends, pass() sets
 /// the next. All functions are called by several threads at once, and so must not write to the system.
@@ -76,12 +77,16 @@ class OwnSystem : public ConstrainedSystem {
   const SparseMatrix& mass() const override { return mass_; }
   void times_mass(const Vector& x, Vector& out) const override { out.noalias() = mass_ * x; }
   bool has_kinks() const override { return false; }
+  /// That of the largest coordinate at the start in all of them; 0 where all are zero: one metre. To be written where
+  /// motions are of another size: errors of automatic steps are shares of it.
+  double reference() const override { return reference_; }
   std::unique_ptr<ConstrainedEquations> equations() const override;
 
  private:
   std::vector<std::string> coordinates_, rows_;
   SparseMatrix mass_;
   State start_;
+  double reference_ = 0.0;
 };
 
 }  // namespace rubato::system

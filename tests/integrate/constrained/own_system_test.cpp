@@ -296,6 +296,62 @@ TEST(OwnSystem, FindsSlopesThatAreNotWritten) {
   EXPECT_LT((found.multiplier - written.multiplier).norm(), 1e-6);
 }
 
+/// A ball on a floor: each bounce leaves a quarter of the height, and they end at 3 sqrt(2 h/g) after a finite time.
+struct Ball final : system::OwnSystem {
+  Ball() : OwnSystem({"height"}, Matrix::Identity(1, 1).sparseView(), Vector::Ones(1), Vector::Zero(1)) {}
+  void force(const State&, model::Side, Vector& f) const override { f << gravity; }
+  Index guard_count() const override { return 1; }
+  GuardValue guard(Index, const State& at) const override { return {at.q[0], at.v[0]}; }
+  Passage pass(Index, State& at) const override {
+    at.v[0] *= -0.5;
+    return Passage::restarts;
+  }
+};
+
+// Below the resolution of times a bounce was passed over, and the ball fell through the floor.
+TEST(OwnSystem, DoesNotFallThroughWhereBouncesEnd) {
+  const Ball ball;
+  const Method method = make_method("generalized_alpha", {{"rho_inf", 0.8}});
+  const auto stepper = make_stepper(method, ball);
+  const auto equations = ball.equations();
+  State state = make_consistent(*equations, ball.start()).state;
+  const auto estimator = make_estimator(LocalError{1e-6}, std::get<GeneralizedAlpha>(method.formula),
+                                        make_error_space(ball, state, 1e-6), state, 3.0);
+  StepPlan plan;
+  plan.locate_events = true;
+  GuardTimeline timeline(ball, 3e-12);
+  const auto report = march(*stepper, *estimator, plan, timeline, state, 3.0);
+  EXPECT_EQ(report.march.end, MarchEnd::failed);
+  EXPECT_NEAR(state.t, 3.0 * std::sqrt(2.0 / gravity), 1e-3);  // bounces of a millisecond are below a step
+  EXPECT_NEAR(state.q[0], 0.0, 1e-5);
+}
+
+TEST(OwnSystem, RefusesWhatIsNoNumberAndNoMass) {
+  struct Blind final : Pendulum {
+    Index guard_count() const override { return 1; }
+    GuardValue guard(Index, const State&) const override { return {std::nan(""), 0.0}; }
+  };
+  EXPECT_THROW((void)march_automatically(Blind(), PiControl{}, LocalError{1e-4}, 1e-4, 1.0), InvalidInput);
+  struct Of final : system::OwnSystem {
+    explicit Of(const Matrix& mass) : OwnSystem({"x", "y"}, mass.sparseView(), Vector::Zero(2), Vector::Zero(2)) {}
+    void force(const State&, model::Side, Vector& f) const override { f = Vector::Zero(3); }
+  };
+  EXPECT_THROW(Of((Matrix(2, 2) << 1.0, 2.0, 2.0, 1.0).finished()), InvalidInput);
+  EXPECT_THROW(Of((Matrix(2, 2) << 2.0, 1.0, 0.0, 1.0).finished()), InvalidInput);
+  const Of sound(Matrix::Identity(2, 2));
+  const auto equations = sound.equations();
+  EXPECT_THROW((void)make_consistent(*equations, sound.start()), InvalidInput);  // three forces
+}
+
+TEST(OwnSystem, MeasuresErrorsByTheSizeOfItsStart) {
+  struct Small final : system::OwnSystem {
+    Small() : OwnSystem({"x"}, Matrix::Identity(1, 1).sparseView(), Vector::Constant(1, 1e-6), Vector::Zero(1)) {}
+    void force(const State& at, model::Side, Vector& f) const override { f << 4.0 * at.q[0]; }
+  };
+  const Automatic run = march_automatically(Small(), PiControl{}, LocalError{1e-5}, 1e-5, 3.0);
+  EXPECT_NEAR(run.state.q[0] / 1e-6, std::cos(6.0), 1e-4);
+}
+
 TEST(OwnSystem, SaysWhatMustBeWritten) {
   struct Nothing final : system::OwnSystem {
     Nothing() : OwnSystem({"x"}, Matrix::Identity(1, 1).sparseView(), Vector::Zero(1), Vector::Zero(1), {"row"}) {}

@@ -2,6 +2,10 @@
 #include <rubato/integrate/constrained/first_zero.hpp>
 #include <rubato/integrate/constrained/guard_timeline.hpp>
 
+#include <rubato/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,15 +35,22 @@ double GuardTimeline::kinetic_energy(const system::State& state) {
 }
 
 bool GuardTimeline::is_watched(const GuardValue& from) const {
-  return from.value >= -resolution_ * std::abs(from.rate);
+  return from.value >= -resolution_ * std::abs(from.rate) || from.rate < 0.0;
+}
+
+GuardValue GuardTimeline::guard_at(Index guard, const system::State& state) const {
+  const GuardValue value = system_.guard(guard, state);
+  if (std::isfinite(value.value) && std::isfinite(value.rate)) return value;
+  throw InvalidInput(fmt::format("guard {} of a system of one's own is {} with the rate {} at t = {} s", guard,
+                                 value.value, value.rate, state.t));
 }
 
 Passage GuardTimeline::pass(const system::State& before, system::State& state, double shift) {
   bool has_jump = false;
   for (Index i = 0; i < system_.guard_count(); ++i) {
-    if (!is_watched(system_.guard(i, before))) continue;
-    const GuardValue now = system_.guard(i, state);
-    if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
+    const GuardValue from = guard_at(i, before), now = guard_at(i, state);
+    if (!is_watched(from) || !(now.value <= resolution_ * std::abs(now.rate) && now.value <= from.value)) continue;
+    if (from.value < -resolution_ * std::abs(from.rate)) return Passage::fails;  // it was missed
     const double energy = kinetic_energy(state);
     const Passage passage = system_.pass(i, state);
     if (passage == Passage::fails) return passage;
@@ -61,9 +72,9 @@ Crossing GuardTimeline::first_crossing(const system::State& from, const system::
   Crossing first;
   const double h = to.t - from.t;
   for (Index i = 0; i < system_.guard_count(); ++i) {
-    const GuardValue a = system_.guard(i, from);
+    const GuardValue a = guard_at(i, from);
     if (!is_watched(a)) continue;
-    const GuardValue b = system_.guard(i, to);
+    const GuardValue b = guard_at(i, to);
     const double chord = b.value - a.value;
     const FirstZero zero = look == Look::at_ends ? first_zero(least, a.value, chord, b.value, chord)
                                                  : first_zero(least, a.value, h * a.rate, b.value, h * b.rate);
@@ -73,7 +84,7 @@ Crossing GuardTimeline::first_crossing(const system::State& from, const system::
 }
 
 GuardValue GuardTimeline::guard(Index guard, const system::State&, const system::State& to) {
-  return system_.guard(guard, to);
+  return guard_at(guard, to);
 }
 
 }  // namespace rubato::integrate

@@ -17,7 +17,8 @@ struct GuardEvent {
 };
 
 /// The timeline of a system of one's own: its breakpoints, and the transitions that its guards tell. A guard that is
-/// negative where a step begins is not watched in it.
+/// negative where a step begins and rises is not watched in it; one that falls has been missed, which
+/// ends the march (bounces that become ever smaller are). Throws InvalidInput for a guard that is not finite.
 class GuardTimeline final : public Timeline {
  public:
   /// @param system      must outlive this
@@ -36,6 +37,7 @@ class GuardTimeline final : public Timeline {
   const std::vector<GuardEvent>& events() const { return events_; }
 
  private:
+  GuardValue guard_at(Index guard, const system::State& state) const;
   /// Whether a guard may pass zero in a step from there.
   bool is_watched(const GuardValue& from) const;
   double kinetic_energy(const system::State& state);
