@@ -64,19 +64,23 @@ def _analysis_at(path, line):
     return named[-1] if named else None
 
 
+def is_mechanism(tables):
+    return any(key in tables for key in ("body", "joint")) or any("formulation" in b and "exact" in b["formulation"] for b in tables.get("beam", []))
+
+
 def allowed_of(tables, part):
     """What two ways to the same equations may differ by, of the largest of a quantity."""
     contacts = "slider" in tables or "stop" in tables or any({"friction", "lock"} & set(j) for j in tables.get("joint", []))
     if part["type"] == "transient" and isinstance(part["step"], dict):
         tolerance = 1e-2 if "cardona_cassano" in part["step"].values() else part["step"]["tolerance"]
-        return float(tolerance) * (300 if contacts else 20 if "body" not in tables and "joint" not in tables else 100)
+        return float(tolerance) * (300 if contacts else 100 if is_mechanism(tables) else 20)
     if part["type"] == "frequency_response":
         return 1e-2 if contacts or part.get("solver") == "time_marching" else 1e-7
-    if part["type"] == "transient" and ("body" in tables or "joint" in tables):
+    if part["type"] == "transient" and is_mechanism(tables):
         return 1e-5  # what Newton's method leaves, whose last correction is spared in smooth mechanisms without laws
     if part.get("method") == "exponential":
         return 1e-3  # exact in what is linear, of second order in laws
-    return 1e-7 if contacts or "body" in tables or "joint" in tables else 1e-9
+    return 1e-7 if contacts or is_mechanism(tables) else 1e-9
 
 
 def judged(command, tables, parts, folder):

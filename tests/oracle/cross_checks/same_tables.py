@@ -54,7 +54,7 @@ def _table(one, other, kind, allowed, stiffness, least_work, unlike):
     keep = [i for i, row in enumerate(zip(one.text("status"), other.text("status"))) if row == ("converged", "converged")] \
         if one.has("status") else range(len(one.rows))
     if one.has("status") and any(a != b for a, b in zip(one.text("status"), other.text("status")) if not (
-            a == "converged" and b in unlike)):
+            a in ("converged", *unlike) and b in unlike)):
         found.append((f"{one.path.name} status", 1.0, 0.0))
     for head in one.head:
         if not other.has(head) or head in APART or ".law_" in head or head.startswith("law_"):
