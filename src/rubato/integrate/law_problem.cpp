@@ -16,7 +16,7 @@ constexpr double enough = 16.0;  // of round-off
 /// The laws taken as linear rows of the complementarity problem; along the way to its solution sliders and stops stay
 /// exact.
 struct LawProblem::Iteration : numerics::NewtonProblem {
-  Iteration(LawProblem& problem, const system::State& from, system::State& to) : p(problem), from(from), to(to) {}
+  Iteration(LawProblem& problem, const system::State& from_, system::State& to_) : p(problem), from(from_), to(to_) {}
 
   static constexpr numerics::NewtonRules rules() {
     numerics::NewtonRules rules;
