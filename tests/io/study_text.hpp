@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/io/read_study.hpp>
 #include <rubato/model/model.hpp>
 #include <rubato/system/assemble.hpp>
@@ -73,7 +74,7 @@ inline std::string verdict(const std::string& text, const std::filesystem::path&
     const auto parameters = model::evaluate_parameters(study.parameters);
     const auto system = system::assemble(model::build(study.model, parameters));
     for (const auto& analysis : study.analyses)
-      (void)analysis::check_analysis(analysis, {study, {}, parameters, system});
+      (void)analysis::check_analysis(analysis, {study, {}, parameters, integrate::StructureKind(system)});
     return "accepted";
   } catch (const InvalidInput& fault) {
     return fault.what();
