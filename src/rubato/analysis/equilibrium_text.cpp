@@ -74,4 +74,13 @@ std::string complaint(const integrate::Equilibrium& equilibrium) {
   return told + "; equilibria leave out the friction of joints, which this model has: let a transient come to rest";
 }
 
+std::string warning_of_rounding(const integrate::Equilibrium& found) {
+  constexpr double told = 1e-3;
+  if (!(found.rounding > told)) return {};
+  return fmt::format(
+      "displacements may err by {:.2g} of the largest: the stiffness of elements that are so short beside the whole is "
+      "known to the rounding of its entries only; take fewer, longer elements",
+      found.rounding);
+}
+
 }  // namespace rubato::analysis

@@ -10,4 +10,7 @@ namespace rubato::analysis {
 /// where it found one.
 std::string complaint(const integrate::Equilibrium& equilibrium);
 
+/// What to tell of displacements that the rounding of the stiffness spoils; empty: nothing.
+std::string warning_of_rounding(const integrate::Equilibrium& found);
+
 }  // namespace rubato::analysis

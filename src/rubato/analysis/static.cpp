@@ -67,6 +67,7 @@ RunReport run_static(const std::string& name, const StaticPlan& plan, const inte
   const integrate::Equilibrium found = plan.found ? *plan.found : kind.find_equilibrium(plan.start, plan.held);
   RunReport report;
   report.warnings = plan.warnings;
+  if (const std::string rounding = warning_of_rounding(found); !rounding.empty()) report.warnings.push_back(rounding);
   report.statistics = found.statistics;
   report.message = complaint(found);
   if (!report.message.empty()) {

@@ -1,3 +1,4 @@
+#include <rubato/analysis/equilibrium_text.hpp>
 #include <rubato/analysis/exact_transient.hpp>
 #include <rubato/analysis/load_checks.hpp>
 #include <rubato/analysis/mechanism_transient.hpp>
@@ -29,7 +30,7 @@ Location place(const Location& wanted, const Location& otherwise) { return wante
 constexpr double stable_share = 0.9;
 
 system::State static_start(const std::string& name, const Location& where, const model::StaticDescription& description,
-                           const system::LocallyNonlinear& system) {
+                           const system::LocallyNonlinear& system, std::vector<std::string>& warnings) {
   const Vector& given = system.start().q;
   for (Index i = 0; i < given.size(); ++i)
     if (given[i] != 0.0)
@@ -37,7 +38,10 @@ system::State static_start(const std::string& name, const Location& where, const
                                             "\"{}\" is given one; remove it, or hold it by a [[displacement]]",
                                             name, system.coordinates()[static_cast<std::size_t>(i)]));
   const std::string title = "analysis \"" + name + "\": ";
-  return equilibrium_of({title, where, description}, integrate::StructureKind(system)).state;
+  const integrate::Equilibrium found = equilibrium_of({title, where, description}, integrate::StructureKind(system));
+  if (std::string rounding = warning_of_rounding(found); !rounding.empty())
+    warnings.push_back("at the start " + rounding);
+  return found.state;
 }
 
 std::string missed_jumps(const integrate::LoadJumps& jumps) {
@@ -141,7 +145,7 @@ void StructureTransient::check(const TransientRequest& request, const TransientP
 
 void StructureTransient::find_start(const TransientRequest& request, TransientPlan& plan) const {
   plan.start = request.description.initial
-                   ? static_start(request.name, request.where, *request.description.initial, system_)
+                   ? static_start(request.name, request.where, *request.description.initial, system_, plan.warnings)
                    : system_.start();
 }
 

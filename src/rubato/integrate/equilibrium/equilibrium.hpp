@@ -28,6 +28,7 @@ struct Equilibrium {
   int load_steps = 0;                ///< by which they were raised; 0: found with all of them at once
   int iterations = 0;                ///< that were taken
   double residual = 0.0;             ///< largest force left [N], [N m]
+  double rounding = 0.0;             ///< by what share displacements may err, the stiffness being rounded
   std::string worst;                 ///< its coordinate
   bool turns_worst = false;          ///< which is a rotation
   bool leaves_out_friction = false;  ///< that of joints, which might hold the system

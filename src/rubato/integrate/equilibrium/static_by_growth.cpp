@@ -1,5 +1,6 @@
 #include <rubato/integrate/equilibrium/contact_tangent.hpp>
 #include <rubato/integrate/equilibrium/easiest_motion.hpp>
+#include <rubato/integrate/equilibrium/rounding.hpp>
 #include <rubato/integrate/equilibrium/static_by_growth.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
@@ -81,6 +82,7 @@ class Growth final : public numerics::NewtonProblem {
     for (std::size_t i = 0; i < held_.size(); ++i)
       result.reaction[static_cast<Index>(i)] = -residual_[held_[i].coordinate];
     result.state = state_;
+    result.rounding = rounding_of_stiffness(system_, free_, factor_, state_.q);
     return result;
   }
 

@@ -1,4 +1,5 @@
 #include <rubato/integrate/equilibrium/easiest_motion.hpp>
+#include <rubato/integrate/equilibrium/rounding.hpp>
 #include <rubato/integrate/equilibrium/static_by_growth.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/numerics/newton.hpp>
@@ -272,6 +273,7 @@ class StaticSolver {
     for (std::size_t i = 0; i < held_.size(); ++i)
       result_.reaction[static_cast<Index>(i)] = -residual[held_[i].coordinate];
     result_.outcome = StaticOutcome::found;
+    result_.rounding = rounding_of_stiffness(system_, free_, factor_, result_.state.q);
   }
 
   const system::LocallyNonlinear& system_;

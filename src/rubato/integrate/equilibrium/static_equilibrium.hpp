@@ -23,6 +23,7 @@ struct StaticEquilibrium {
   std::vector<Index> moving;  ///< coordinates that move where the outcome is mechanism or gives_way
   double reached = 1.0;       ///< share of the loads up to which there is an equilibrium
   int factorisations = 0;
+  double rounding = 0.0;  ///< rounding_of_stiffness() [-]
 };
 
 /// The state in which
