@@ -99,7 +99,7 @@ TEST(LawInAMechanism, TakesTheStepsOfTheOscillatorWithTheSameLaw) {
   const std::string steps = equal_steps + "method = \"average_acceleration\"\n";
   const std::string body =
       "[[body]]\nname = \"bar\"\nmass = 1.0\ninertia = 0.5\nposition = [0.0, 0.0]\n[[force]]\non = \"bar.rz\"\n" + load;
-  for (const std::string law :
+  for (const std::string& law :
        {"[[bouc_wen]]\nname = \"s\"\n" + bouc_wen,
         std::string("[[nonlinear_spring]]\nname = \"s\"\nforce = \"30*u + 500*u^3 + 0.1*rate + sin(7*t)\"\n")}) {
     const StructureStudy expected(oscillator(0.5, law + "between = [\"q\", \"ground\"]\n", steps));

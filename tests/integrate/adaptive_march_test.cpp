@@ -396,7 +396,9 @@ class SlowlyRisingError final : public Estimator {
 TEST(TableLoad, NeverTriesTheStepAgainThatWasRejected) {
   struct Tries final : TryLog {
     void tried(const StepTry& now) override {
-      if (last.outcome == TryOutcome::error_too_large && now.t == last.t) EXPECT_LT(now.step, last.step);
+      if (last.outcome == TryOutcome::error_too_large && now.t == last.t) {
+        EXPECT_LT(now.step, last.step);
+      }
       last = now;
       if (++count > 1000) throw std::runtime_error("the march does not end");
     }

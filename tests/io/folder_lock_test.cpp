@@ -79,7 +79,9 @@ TEST_F(FolderLocked, SaysWhatBecameOfTheFolder) {
 
 TEST_F(FolderLocked, CannotBeWhereNothingCanBeWritten) {
   EXPECT_THROW(FolderLock(folder_ / "nowhere"), InvalidInput);
-  if (fs::exists("/proc/self")) EXPECT_THROW(FolderLock("/proc/self"), InvalidInput);
+  if (fs::exists("/proc/self")) {
+    EXPECT_THROW(FolderLock("/proc/self"), InvalidInput);
+  }
 }
 
 }  // namespace

@@ -159,8 +159,12 @@ TEST(FormulaParity, OfRandomFormulasHoldsToTheLastBit) {
     for (const auto& [u, rate] : {std::array{0.3, -0.1}, {1.7, 2.9}, {-0.02, 0.6}, {3.0, 1.0}, {0.5, 0.5}}) {
       const double there = formula(0.4, std::array{u, rate}), back = formula(0.4, std::array{-u, -rate});
       if (!std::isfinite(there) || !std::isfinite(back)) continue;
-      if (parity.is_odd) EXPECT_EQ(back, -there) << text << " at " << u << ", " << rate;
-      if (parity.is_even) EXPECT_EQ(back, there) << text << " at " << u << ", " << rate;
+      if (parity.is_odd) {
+        EXPECT_EQ(back, -there) << text << " at " << u << ", " << rate;
+      }
+      if (parity.is_even) {
+        EXPECT_EQ(back, there) << text << " at " << u << ", " << rate;
+      }
     }
   }
   EXPECT_GT(odd, 500);
