@@ -161,6 +161,34 @@ type = "static"
   EXPECT_LT((Matrix(study.system.free_stiffness()) - expected).norm(), 1e-14);
 }
 
+// A sweep of a share may pass zero: there the law does nothing, and the point was told impossible.
+TEST(LawShares, MayBeZero) {
+  const auto plain = chain(6, Law::none), stiffening = chain(6, Law::stiffening);
+  system::LocallyNonlinear::Parts parts;
+  parts.mass = plain.mass();
+  parts.damping = plain.damping();
+  parts.stiffness = plain.stiffness();
+  parts.loads = plain.loads();
+  parts.coordinates = plain.coordinates();
+  parts.laws = stiffening.laws();
+  for (model::Share& share : parts.laws[0].shares) share.weight = 0.0;
+  const system::LocallyNonlinear zero(std::move(parts));
+  const SteadyRequest request = testing::observing({0, 1, 5});
+  const SteadyResponse expected = testing::respond(plain, request, 1e-10),
+                       found = testing::respond(zero, request, 1e-10);
+  ASSERT_EQ(found.status, SteadyStatus::converged);
+  EXPECT_LT((expected.amplitude - found.amplitude).norm(), 1e-9 * expected.amplitude.norm());
+  EXPECT_EQ(march_of(zero, "hht", 0.01).slider_force[0], 0.0);
+  const testing::PreparedStudy study(R"toml(
+parameters = { b = 0.0 }
+coordinate = [{ name = "x", mass = 1.0 }]
+spring = [{ between = ["x", "ground"], stiffness = 2.0 }]
+nonlinear_spring = [{ name = "brace", shares = { x = "b" }, force = "3*u" }]
+analysis = [{ name = "rest", type = "static" }]
+)toml");
+  EXPECT_EQ(Matrix(study.system.free_stiffness())(0, 0), 2.0);
+}
+
 // The two shares 1 and -1 are the ends of `between`, to the last bit.
 TEST(LawShares, OfOneAndMinusOneAreADifference) {
   const auto with = [](bool as_shares) {

@@ -15,14 +15,6 @@ namespace {
 
 using numerics::Parameters;
 
-/// Whether a coordinate is part of u.
-bool joins(const auto& contact, Index place) { return contact.first == place || contact.second == place; }
-bool joins(const LawBetween& law, Index place) {
-  return law.first == place || law.second == place ||
-         std::any_of(law.shares.begin(), law.shares.end(),
-                     [&](const Share& share) { return share.coordinate == place; });
-}
-
 /// Looks names up and evaluates numbers, with messages that name the part.
 class Builder {
  public:
@@ -345,14 +337,14 @@ class Builder {
     }
   }
 
-  /// u of a law as a sum of coordinates: those that are fixed drop out.
+  /// u of a law as a sum of coordinates: those that are fixed drop out. A share of zero, as within a sweep, stays.
   std::vector<Share> shares_of(const LawDescription& law, const std::string& part) const {
     std::vector<Share> shares;
     for (const auto& [name, weight] : law.shares) {
       const double value = number(weight, fmt::format("{}: the share of \"{}\"", part, name));
       if (name == "ground" || fixed_.count(name) > 0) continue;
       const Index place = find(name, law.shares_where, part + " takes a share of");
-      if (value != 0.0) shares.push_back({place, value});
+      shares.push_back({place, value});
     }
     if (shares.empty())
       throw InvalidInput(law.shares_where, fmt::format("{}: no coordinate that moves has a share in its u", part));
@@ -421,16 +413,11 @@ class Builder {
         refuse("another one holds it; a law has a value at t = 0 already");
       if (model_.position[place] != 0.0 || model_.velocity[place] != 0.0)
         refuse("it is given a position or velocity at the start; leave them out");
-      const auto refuse_contact = [&](const auto& contact) {
-        if (joins(contact, place))
-          refuse(
-              fmt::format("\"{}\" joins it: sliders and stops join what moves freely; put a light mass on a stiff "
-                          "spring between, or take [base_motion], by which the ground itself moves",
-                          contact.name));
-      };
-      for (const Slider& slider : model_.sliders) refuse_contact(slider);
-      for (const Stop& stop : model_.stops) refuse_contact(stop);
-      for (const LawBetween& law : model_.laws) refuse_contact(law);
+      if (const std::string contact = contact_at(model_, place); !contact.empty())
+        refuse(
+            fmt::format("\"{}\" joins it: sliders, stops and laws join what moves freely; put a light mass on a stiff "
+                        "spring between, or take [base_motion], by which the ground itself moves",
+                        contact));
       model_.prescribed.push_back(build_prescribed(motion, place, parameters_));
     }
     if (static_cast<Index>(model_.prescribed.size()) == model_.size())

@@ -25,6 +25,9 @@ TableLaw build_motion(const TableDescription& description, const numerics::Param
 Prescribed build_prescribed(const PrescribedDescription& description, Index coordinate,
                             const numerics::Parameters& parameters);
 
+/// The name of a slider, stop or law in whose u a coordinate is; empty: none.
+std::string contact_at(const Model& model, Index coordinate);
+
 /// @param n  coordinates of the model
 Damping build_damping(const DampingDescription& description, Index n, const numerics::Parameters& parameters);
 /// Where damping is described; of no damping, nowhere.

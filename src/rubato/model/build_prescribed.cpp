@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rubato::model {
@@ -71,6 +72,19 @@ Prescribed build_prescribed(const PrescribedDescription& description, Index coor
                             const numerics::Parameters& parameters) {
   const std::string part = fmt::format("the displacement of \"{}\"", description.on);
   return std::visit(Building{parameters, part, description.where, coordinate}, description.law);
+}
+
+std::string contact_at(const Model& model, Index coordinate) {
+  const auto joins = [&](const auto& contact) { return contact.first == coordinate || contact.second == coordinate; };
+  for (const Slider& slider : model.sliders)
+    if (joins(slider)) return slider.name;
+  for (const Stop& stop : model.stops)
+    if (joins(stop)) return stop.name;
+  for (const LawBetween& law : model.laws)
+    if (joins(law) || std::any_of(law.shares.begin(), law.shares.end(),
+                                  [&](const Share& share) { return share.coordinate == coordinate; }))
+      return law.name;
+  return {};
 }
 
 }  // namespace rubato::model

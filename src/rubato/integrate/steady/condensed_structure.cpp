@@ -15,7 +15,8 @@ constexpr double full = 0.05;           // part of C that is not zero, from whic
 // the rest of Z.
 double holding_stiffness_of(const std::vector<model::Share>& column, double stiffness, const Vector& diagonal) {
   double of_structure = 0.0;
-  for (const auto& [place, weight] : column) of_structure = std::max(of_structure, diagonal[place] / (weight * weight));
+  for (const auto& [place, weight] : column)
+    if (weight != 0.0) of_structure = std::max(of_structure, diagonal[place] / (weight * weight));
   if (!(of_structure > 0.0) && diagonal.size() > 0) of_structure = diagonal.maxCoeff();
   return of_structure > 0.0 ? std::min(stiffness, of_structure) : stiffness;
 }
