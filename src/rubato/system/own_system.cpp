@@ -47,8 +47,7 @@ class OwnEquations final : public ConstrainedEquations {
         stiffness_(n_, n_),
         damping_(n_, n_),
         curvature_(n_, n_),
-        jacobian_(Matrix::Zero(c_, n_)),
-        rate_(c_) {
+        jacobian_(Matrix::Zero(c_, n_)) {
     std::vector<SaddleMatrix::Entry> entries;
     for (Index i = 0; i < n_; ++i)
       for (Index j = 0; j <= i; ++j) entries.emplace_back(i, j);
@@ -160,7 +159,6 @@ class OwnEquations final : public ConstrainedEquations {
   const State* state_ = nullptr;
   model::Side side_ = model::Side::left;
   Matrix stiffness_, damping_, curvature_, jacobian_;
-  Vector rate_;
   std::vector<int> slot_, row_slot_, transposed_slot_;
 };
 
