@@ -1,5 +1,5 @@
-#include <rubato/integrate/steady/linear_response.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
+#include <rubato/steady/linear/linear_response.hpp>
 
 #include "measure.hpp"
 #include "support/models.hpp"
@@ -55,25 +55,25 @@ void modes(const char* name, const system::LocallyNonlinear& system) {
 
 void responses(const char* name, const system::LocallyNonlinear& system, double highest) {
   const int frequencies = 200;
-  integrate::Excitation excitation;
-  excitation.harmonics = {{1, integrate::ComplexVector::Zero(system.size())}};
+  system::Excitation excitation;
+  excitation.harmonics = {{1, ComplexVector::Zero(system.size())}};
   excitation.harmonics[0].amplitude[system.size() / 3 + 17] = 1.0;
-  const integrate::SteadyRequest request{{{system.size() / 3 + 17}, {system.size() / 2}}, {1}, true};
-  const auto sweep = [&](integrate::LinearResponse solver, std::vector<double>& amplitudes) {
-    integrate::SteadyResponse response;
+  const steady::SteadyRequest request{{{system.size() / 3 + 17}, {system.size() / 2}}, {1}, true};
+  const auto sweep = [&](steady::LinearResponse solver, std::vector<double>& amplitudes) {
+    steady::SteadyResponse response;
     for (int i = 1; i <= frequencies; ++i) {
       excitation.angular_frequency = highest * i / frequencies;
-      solver.solve(excitation, integrate::SteadyStart::unloaded, response);
+      solver.solve(excitation, steady::SteadyStart::unloaded, response);
       amplitudes.push_back(response.amplitude[1]);
     }
     return solver.goes_by_modes();
   };
   std::vector<double> direct, chosen;
   double start = cpu_seconds();
-  sweep(integrate::stuck_limit(system, request), direct);
+  sweep(steady::stuck_limit(system, request), direct);
   const double direct_time = cpu_seconds() - start;
   start = cpu_seconds();
-  const bool by_modes = sweep(integrate::stuck_limit(system, request, {frequencies, highest, 1e-9}), chosen);
+  const bool by_modes = sweep(steady::stuck_limit(system, request, {frequencies, highest, 1e-9}), chosen);
   const double chosen_time = cpu_seconds() - start;
   double difference = 0.0;
   for (std::size_t i = 0; i < direct.size(); ++i)

@@ -2,9 +2,9 @@
 #include "measure.hpp"
 #include "peers/steady_march.hpp"
 
-#include <rubato/integrate/steady/harmonic_balance.hpp>
-#include <rubato/integrate/steady/periodic_solver.hpp>
-#include <rubato/integrate/steady/time_marching.hpp>
+#include <rubato/steady/harmonic_balance/harmonic_balance.hpp>
+#include <rubato/steady/marching/time_marching.hpp>
+#include <rubato/steady/periodic/periodic_solver.hpp>
 #include <support/models.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace rubato::benchmarks {
 namespace {
 
-using namespace integrate;
+using namespace steady;
 
 struct Map {
   const char* name;
@@ -33,8 +33,8 @@ struct Map {
   double target_periodic, target_balance, target_exponential, target_average;  // [s] of the map; 0: none
   Index count() const { return static_cast<Index>(preloads.size()) * points; }
   double frequency(int i) const { return lowest + (highest - lowest) * i / (points - 1); }
-  Excitation excitation(std::size_t preload) const {
-    Excitation result = excitation_of(system);
+  system::Excitation excitation(std::size_t preload) const {
+    system::Excitation result = excitation_of(system);
     result.limits.setConstant(friction * preloads[preload]);
     return result;
   }
@@ -55,7 +55,7 @@ Answer by_points(const Map& map, SteadySolver& solver) {
   SteadyResponse response;
   for (std::size_t p = 0; p < map.preloads.size(); ++p) {
     solver.forget();
-    Excitation excitation = map.excitation(p);
+    system::Excitation excitation = map.excitation(p);
     for (int i = 0; i < map.points; ++i) {
       excitation.angular_frequency = map.frequency(i);
       solver.solve(excitation, SteadyStart::unloaded, response);
@@ -70,11 +70,11 @@ Answer by_points(const Map& map, SteadySolver& solver) {
 Answer by_lanes(const Map& map, SteadySolver& solver) {
   Answer answer = answer_of(map);
   solver.forget();
-  std::vector<Excitation> excitations;
+  std::vector<system::Excitation> excitations;
   for (std::size_t p = 0; p < map.preloads.size(); ++p) excitations.push_back(map.excitation(p));
   std::vector<SteadyResponse> responses(excitations.size());
   for (int i = 0; i < map.points; ++i) {
-    for (Excitation& excitation : excitations) excitation.angular_frequency = map.frequency(i);
+    for (system::Excitation& excitation : excitations) excitation.angular_frequency = map.frequency(i);
     solver.solve_lanes(excitations, SteadyStart::unloaded, responses);
     for (std::size_t p = 0; p < responses.size(); ++p) {
       answer.failures += responses[p].status != SteadyStatus::converged;
@@ -86,7 +86,7 @@ Answer by_lanes(const Map& map, SteadySolver& solver) {
 
 Answer by_marching(const Map& map, const char* method) {
   TimeMarchingOptions options;
-  options.method = make_method(method);
+  options.method = integrate::make_method(method);
   TimeMarchingSolver solver(map.system, options, map.request);
   return by_lanes(map, solver);
 }

@@ -1,8 +1,8 @@
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
-#include <rubato/integrate/steady/harmonic_balance.hpp>
-#include <rubato/integrate/steady/time_marching.hpp>
+#include <rubato/steady/harmonic_balance/harmonic_balance.hpp>
+#include <rubato/steady/marching/time_marching.hpp>
 
 #include <support/harmonic_response.hpp>
 #include <support/laws.hpp>
@@ -110,9 +110,9 @@ TEST(LawShares, AddTheirSharesToTheMatricesInStaticStates) {
 TEST(LawShares, AddTheirSharesToTheMatricesInSteadyResponses) {
   for (const Index n : {6, 90}) {
     const auto linear = chain(n, Law::linear), by_law = chain(n, Law::as_law);
-    const SteadyResponse exact = testing::respond(linear, testing::observing({0, 1, n - 1}), 1e-10);
-    const SteadyResponse found = testing::respond(by_law, testing::observing({0, 1, n - 1}), 1e-10);
-    ASSERT_EQ(found.status, SteadyStatus::converged);
+    const steady::SteadyResponse exact = testing::respond(linear, testing::observing({0, 1, n - 1}), 1e-10);
+    const steady::SteadyResponse found = testing::respond(by_law, testing::observing({0, 1, n - 1}), 1e-10);
+    ASSERT_EQ(found.status, steady::SteadyStatus::converged);
     EXPECT_LT((exact.amplitude - found.amplitude).norm(), 1e-9 * exact.amplitude.norm());
     // The law of C times the rate dissipates pi w c |u|^2 of its own.
     EXPECT_NEAR(found.input_work, found.viscous_work + found.law_dissipated.sum(),
@@ -122,12 +122,12 @@ TEST(LawShares, AddTheirSharesToTheMatricesInSteadyResponses) {
 
 TEST(LawShares, MeetBetweenTimeMarchingAndHarmonicBalance) {
   const auto system = chain(6, Law::stiffening);
-  const SteadyRequest request = testing::observing({0, 1, 5});
-  const SteadyResponse balanced = testing::respond(system, request, 1e-7);
-  TimeMarchingSolver marching(system, {}, request);
-  SteadyResponse marched;
-  marching.solve(excitation_of(system), SteadyStart::unloaded, marched);
-  ASSERT_EQ(marched.status, SteadyStatus::converged);
+  const steady::SteadyRequest request = testing::observing({0, 1, 5});
+  const steady::SteadyResponse balanced = testing::respond(system, request, 1e-7);
+  steady::TimeMarchingSolver marching(system, {}, request);
+  steady::SteadyResponse marched;
+  marching.solve(excitation_of(system), steady::SteadyStart::unloaded, marched);
+  ASSERT_EQ(marched.status, steady::SteadyStatus::converged);
   EXPECT_LT((balanced.amplitude - marched.amplitude).cwiseAbs().maxCoeff(),
             (balanced.error + marched.error) * balanced.amplitude.maxCoeff());
   const double linear = testing::respond(chain(6, Law::linear), request, 1e-7).amplitude.norm();
@@ -173,10 +173,10 @@ TEST(LawShares, MayBeZero) {
   parts.laws = stiffening.laws();
   for (model::Share& share : parts.laws[0].shares) share.weight = 0.0;
   const system::LocallyNonlinear zero(std::move(parts));
-  const SteadyRequest request = testing::observing({0, 1, 5});
-  const SteadyResponse expected = testing::respond(plain, request, 1e-10),
-                       found = testing::respond(zero, request, 1e-10);
-  ASSERT_EQ(found.status, SteadyStatus::converged);
+  const steady::SteadyRequest request = testing::observing({0, 1, 5});
+  const steady::SteadyResponse expected = testing::respond(plain, request, 1e-10),
+                               found = testing::respond(zero, request, 1e-10);
+  ASSERT_EQ(found.status, steady::SteadyStatus::converged);
   EXPECT_LT((expected.amplitude - found.amplitude).norm(), 1e-9 * expected.amplitude.norm());
   EXPECT_EQ(march_of(zero, "hht", 0.01).slider_force[0], 0.0);
   const testing::PreparedStudy study(R"toml(

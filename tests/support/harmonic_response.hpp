@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/integrate/steady/harmonic_balance.hpp>
+#include <rubato/steady/harmonic_balance/harmonic_balance.hpp>
 
 #include "support/models.hpp"
 
@@ -14,25 +14,24 @@
 namespace rubato::testing {
 
 /// The displacements of some coordinates.
-inline integrate::SteadyRequest observing(std::initializer_list<Index> coordinates) {
-  integrate::SteadyRequest request;
+inline steady::SteadyRequest observing(std::initializer_list<Index> coordinates) {
+  steady::SteadyRequest request;
   for (const Index i : coordinates) request.observed.push_back({i, ground});
   return request;
 }
 
 /// By harmonic balance, which must converge.
-inline integrate::SteadyResponse respond(const system::LocallyNonlinear& system,
-                                         const integrate::SteadyRequest& request, double tolerance = 1e-6,
-                                         int most_harmonics = 201) {
-  integrate::HarmonicBalanceSolver solver(system, request, {.tolerance = tolerance, .most_harmonics = most_harmonics});
-  integrate::SteadyResponse response;
-  solver.solve(integrate::excitation_of(system), integrate::SteadyStart::unloaded, response);
-  EXPECT_EQ(response.status, integrate::SteadyStatus::converged);
+inline steady::SteadyResponse respond(const system::LocallyNonlinear& system, const steady::SteadyRequest& request,
+                                      double tolerance = 1e-6, int most_harmonics = 201) {
+  steady::HarmonicBalanceSolver solver(system, request, {.tolerance = tolerance, .most_harmonics = most_harmonics});
+  steady::SteadyResponse response;
+  solver.solve(system::excitation_of(system), steady::SteadyStart::unloaded, response);
+  EXPECT_EQ(response.status, steady::SteadyStatus::converged);
   return response;
 }
 
 /// What comes in is what dampers and sliders take.
-inline void expect_balance(const integrate::SteadyResponse& r) {
+inline void expect_balance(const steady::SteadyResponse& r) {
   EXPECT_NEAR(r.input_work, r.viscous_work + r.dissipated.sum(), 1e-10 * r.input_work);
 }
 

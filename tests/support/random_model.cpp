@@ -104,9 +104,9 @@ system::LocallyNonlinear random_model(std::uint64_t seed, const RandomModelBound
   return system::LocallyNonlinear(std::move(parts));
 }
 
-integrate::SteadyRequest random_request(std::uint64_t seed, Index coordinates) {
+steady::SteadyRequest random_request(std::uint64_t seed, Index coordinates) {
   RandomNumbers random(~seed);
-  integrate::SteadyRequest request;
+  steady::SteadyRequest request;
   for (Index i = 0, count = 1 + random.below(3); i < count; ++i) {
     const Index first = random.below(coordinates), second = random.chance(0.3) ? random.below(coordinates) : ground;
     request.observed.push_back({first, first == second ? ground : second});

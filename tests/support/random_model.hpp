@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/steady/steady_solver.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <cstdint>
@@ -44,6 +44,6 @@ struct RandomModelBounds {
 system::LocallyNonlinear random_model(std::uint64_t seed, const RandomModelBounds& bounds = {});
 
 /// One to three coordinates of it, or differences of two.
-integrate::SteadyRequest random_request(std::uint64_t seed, Index coordinates);
+steady::SteadyRequest random_request(std::uint64_t seed, Index coordinates);
 
 }  // namespace rubato::testing

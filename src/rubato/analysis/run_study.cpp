@@ -61,7 +61,7 @@ AnalysisOutline outline(const FrequencyResponsePlan& plan, Index slider_count) {
                           (plan.points() * columns + waveforms * (observed + 2.0 * sliders + 3.0));
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points() * observed;
   result.warnings = plan.warnings;
-  result.summary = fmt::format("frequency response, {}, {} line{} of {} points", integrate::route_name(plan.route.kind),
+  result.summary = fmt::format("frequency response, {}, {} line{} of {} points", steady::route_name(plan.route.kind),
                                plan.sweep.lines(), plan.sweep.lines() == 1 ? "" : "s", plan.steps.size());
   return result;
 }
@@ -142,11 +142,11 @@ struct Plan {
     require_structure();
     const auto plan = std::make_shared<const FrequencyResponsePlan>(
         plan_frequency_response(analysis.name, analysis.where, response, input));
-    at_the_analysis([&] { (void)integrate::steady_solvers(plan->route).response(input.structure(), plan->request); });
+    at_the_analysis([&] { (void)steady::steady_solvers(plan->route).response(input.structure(), plan->request); });
     return {outline(*plan, input.structure().slider_count()),
             [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_frequency_response(name, *plan, at, integrate::steady_solvers(plan->route), context);
+              return run_frequency_response(name, *plan, at, steady::steady_solvers(plan->route), context);
             }};
   }
 

@@ -1,3 +1,4 @@
+#include <rubato/core/complex.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/numerics/complex_ldlt.hpp>
 
@@ -10,8 +11,6 @@
 namespace rubato::numerics {
 
 namespace {
-
-using Complex = std::complex<double>;
 
 // Products and quotients by parts: the operators of std::complex look after infinities, at three times the price.
 inline Complex product(Complex a, Complex b) {

@@ -1,3 +1,4 @@
+#include <rubato/core/complex.hpp>
 #include <rubato/numerics/complex_ldlt.hpp>
 #include <rubato/numerics/eigen_damped.hpp>
 #include <rubato/numerics/eigen_quadratic.hpp>
@@ -12,9 +13,6 @@
 
 namespace rubato::numerics {
 namespace {
-
-using Complex = std::complex<double>;
-using ComplexVector = Eigen::VectorXcd;
 
 constexpr double unit = std::numeric_limits<double>::epsilon();
 constexpr Index largest_full = 400;  // coupled modes solved together: seconds

@@ -1,3 +1,4 @@
+#include <rubato/core/complex.hpp>
 #include <rubato/numerics/eigen_quadratic.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -6,8 +7,6 @@
 #include <cmath>
 
 namespace rubato::numerics {
-
-using Complex = std::complex<double>;
 
 std::vector<QuadraticMode> quadratic_modes(const Vector& squares, const Matrix& damping) {
   const Index r = squares.size();

@@ -1,3 +1,4 @@
+#include <rubato/core/complex.hpp>
 #include <rubato/numerics/eigen_unsymmetric.hpp>
 #include <rubato/numerics/scaled_residual.hpp>
 
@@ -11,8 +12,6 @@
 
 namespace rubato::numerics {
 namespace {
-
-using Complex = std::complex<double>;
 
 constexpr int most_iterations = 12;
 constexpr double accurate = 1e-8;    // defect beyond which a mode is iterated

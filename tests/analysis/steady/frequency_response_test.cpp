@@ -8,7 +8,7 @@
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
 #include <rubato/analysis/steady/frequency_text.hpp>
 #include <rubato/analysis/steady/status_counts.hpp>
-#include <rubato/integrate/steady/linear_response.hpp>
+#include <rubato/steady/linear/linear_response.hpp>
 
 #include <cmath>
 #include <complex>
@@ -20,8 +20,8 @@ namespace rubato::testing {
 namespace {
 
 using namespace analysis;
-using integrate::steady_solvers;
-using integrate::SteadySolvers;
+using steady::steady_solvers;
+using steady::SteadySolvers;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -39,28 +39,28 @@ SteadySolvers stuck_sliders() {
 }
 
 /// Calls back before every point, and remembers sliders as springs.
-class WatchedSolver final : public integrate::SteadySolver {
+class WatchedSolver final : public steady::SteadySolver {
  public:
-  WatchedSolver(std::unique_ptr<integrate::SteadySolver> inner, std::function<void()> before_point, int lanes = 1)
+  WatchedSolver(std::unique_ptr<steady::SteadySolver> inner, std::function<void()> before_point, int lanes = 1)
       : inner_(std::move(inner)), before_point_(std::move(before_point)), lanes_(lanes) {}
-  void solve(const integrate::Excitation& excitation, integrate::SteadyStart start,
-             integrate::SteadyResponse& response) override {
+  void solve(const system::Excitation& excitation, steady::SteadyStart start,
+             steady::SteadyResponse& response) override {
     before_point_();
     inner_->solve(excitation, start, response);
   }
   int lanes() const override { return lanes_; }
-  void solve_lanes(std::span<const integrate::Excitation> excitations, integrate::SteadyStart start,
-                   std::span<integrate::SteadyResponse> responses) override {
+  void solve_lanes(std::span<const system::Excitation> excitations, steady::SteadyStart start,
+                   std::span<steady::SteadyResponse> responses) override {
     for (std::size_t i = 0; i < excitations.size(); ++i) solve(excitations[i], start, responses[i]);
     widest = std::max(widest, static_cast<int>(excitations.size()));
   }
-  integrate::Waveform waveform(int points) const override { return inner_->waveform(points); }
+  steady::Waveform waveform(int points) const override { return inner_->waveform(points); }
   void forget() override { inner_->forget(); }
 
   static inline int widest = 0;  ///< of all solvers: the most points side by side
 
  private:
-  std::unique_ptr<integrate::SteadySolver> inner_;
+  std::unique_ptr<steady::SteadySolver> inner_;
   std::function<void()> before_point_;
   int lanes_;
 };
@@ -74,19 +74,18 @@ SteadySolvers watched(const std::function<void()>& before_point, int lanes = 1) 
 }
 
 /// Keeps the limits that it is given.
-class LimitKeeper final : public integrate::SteadySolver {
+class LimitKeeper final : public steady::SteadySolver {
  public:
   explicit LimitKeeper(std::vector<double>& limits) : limits_(limits) {}
-  void solve(const integrate::Excitation& excitation, integrate::SteadyStart,
-             integrate::SteadyResponse& response) override {
+  void solve(const system::Excitation& excitation, steady::SteadyStart, steady::SteadyResponse& response) override {
     limits_.push_back(excitation.limits[0]);
-    response.status = integrate::SteadyStatus::converged;
+    response.status = steady::SteadyStatus::converged;
     response.amplitude = response.velocity_amplitude = response.acceleration_amplitude = response.mean = response.rms =
         Vector::Constant(1, excitation.limits[0]);
-    response.harmonics = integrate::ComplexMatrix::Zero(1, 1);
+    response.harmonics = ComplexMatrix::Zero(1, 1);
     response.dissipated = response.slip_share = response.offset = Vector::Zero(1);
   }
-  integrate::Waveform waveform(int) const override { return {}; }
+  steady::Waveform waveform(int) const override { return {}; }
   void forget() override {}
 
  private:

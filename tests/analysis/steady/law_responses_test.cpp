@@ -15,7 +15,7 @@ namespace rubato::testing {
 namespace {
 
 using namespace analysis;
-using integrate::SteadyRoute;
+using steady::SteadyRoute;
 
 FrequencyResponsePlan plan_of(const PreparedStudy& prepared) {
   const auto& analysis = prepared.study.analyses.front();

@@ -226,7 +226,7 @@ class Warnings {
 /// Solves lines of the sweep; the values of one side by side where there are few lines.
 class Lines {
  public:
-  Lines(const DamperCurvePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
+  Lines(const DamperCurvePlan& plan, const StudyInput& input, const steady::SteadySolvers& solvers,
         const DamperCurveTables& layouts, bool with_limits, SweepProgress& progress, const std::atomic<bool>& stop)
       : plan_(plan), layouts_(layouts), with_limits_(with_limits), progress_(progress), stop_(stop), families_([&] {
           return std::make_unique<DamperPeaks>(plan, input, solvers, stop);
@@ -276,15 +276,15 @@ class Lines {
 
 }  // namespace
 
-integrate::SteadySolvers damper_curve_solvers() {
+steady::SteadySolvers damper_curve_solvers() {
   // Peaks are where differences of amplitudes vanish: these want all digits (see find_peaks).
-  integrate::SteadyRoute route;
+  steady::SteadyRoute route;
   route.tolerance = 1e-13;
-  return integrate::steady_solvers(route);
+  return steady::steady_solvers(route);
 }
 
 RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan, const StudyInput& input,
-                           const integrate::SteadySolvers& solvers, RunContext& context) {
+                           const steady::SteadySolvers& solvers, RunContext& context) {
   const DamperCurveTables layouts(name, plan, input);
   Tables tables(plan, layouts, context.sink);
   context.progress.begin(name, plan.points(), "values");

@@ -2,7 +2,7 @@
 
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/study_input.hpp>
-#include <rubato/integrate/steady/steady_route.hpp>
+#include <rubato/steady/steady_route.hpp>
 
 #include <string>
 
@@ -11,12 +11,12 @@ namespace rubato::analysis {
 struct DamperCurvePlan;
 
 /// The solvers that damper curves need: periodic orbits to the round-off that differences of them can bear.
-integrate::SteadySolvers damper_curve_solvers();
+steady::SteadySolvers damper_curve_solvers();
 
 /// Finds the largest objective over frequency at every value of the parameter, and refines the value where it is best
 /// (see find_optimum), on several threads; streams the tables of DamperCurveTables. The numbers have the same bits
 /// whatever the number of threads. A value without a peak has a status; the others go on.
 RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan, const StudyInput& input,
-                           const integrate::SteadySolvers& solvers, RunContext& context);
+                           const steady::SteadySolvers& solvers, RunContext& context);
 
 }  // namespace rubato::analysis

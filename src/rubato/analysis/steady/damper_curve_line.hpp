@@ -38,7 +38,7 @@ struct DamperLineResult {
 struct DamperValue {
   bool is_done = false;
   std::vector<Peak> peaks;
-  integrate::SteadyResponse response;
+  steady::SteadyResponse response;
   PointStatus status = PointStatus::not_converged;
   DamperPeaks::Scan scan;
   std::optional<std::array<std::optional<Peak>, 2>> limits;  ///< free and stuck, where they were asked for

@@ -113,7 +113,7 @@ void require_ends(const DamperCurvePlan& plan, const StudyInput& input, const st
           values.back() = value;
           const double point = plan.excitation_factor * frequency;
           const system::AssembledModel structure = build_structure(input.study, at.parameters_at(values, point));
-          integrate::Excitation excitation;
+          system::Excitation excitation;
           at.take_line(values, structure);
           at.take_point(point, excitation);
         });

@@ -4,7 +4,7 @@
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
-#include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/steady/steady_solver.hpp>
 
 #include <string>
 #include <vector>
@@ -27,7 +27,7 @@ struct DamperCurvePlan {
   Objective objective = Objective::amplitude;
   bool has_optimum = true;  ///< whether it is wanted, and there are values to look between
   std::vector<Observed> observed = {};
-  integrate::SteadyRequest request = {};
+  steady::SteadyRequest request = {};
 
   bool structure_follows_parameter = false, structure_follows_frequency = false;
   bool limits_follow_parameter = false;  ///< the linear limits

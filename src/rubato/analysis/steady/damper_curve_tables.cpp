@@ -168,7 +168,7 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
   bands_ = {name, "bands", "value", bands, {{"samples", std::to_string(plan.sweep.lines())}}};
 }
 
-void DamperCurveTables::add_response(const std::optional<Peak>& top, const integrate::SteadyResponse& response,
+void DamperCurveTables::add_response(const std::optional<Peak>& top, const steady::SteadyResponse& response,
                                      std::vector<double>& rows) const {
   rows.push_back(top ? top->at : nothing);
   append(response.amplitude, observed_, rows);
@@ -183,7 +183,7 @@ void DamperCurveTables::add_response(const std::optional<Peak>& top, const integ
 }
 
 void DamperCurveTables::add(std::span<const double> line, double parameter, const std::optional<Peak>& top,
-                            std::size_t peaks, const integrate::SteadyResponse& response, PointStatus status,
+                            std::size_t peaks, const steady::SteadyResponse& response, PointStatus status,
                             std::vector<double>& rows) const {
   append(line, rows);
   rows.push_back(parameter);
@@ -212,7 +212,7 @@ void DamperCurveTables::add_peak(std::span<const double> line, double parameter,
 }
 
 void DamperCurveTables::add_optimum(std::span<const double> line, const Optimum& optimum,
-                                    const integrate::SteadyResponse& response, std::vector<double>& rows) const {
+                                    const steady::SteadyResponse& response, std::vector<double>& rows) const {
   append(line, rows);
   rows.push_back(optimum.parameter);
   add_response(optimum.active.front(), response, rows);

@@ -33,19 +33,19 @@ class DamperCurveTables {
 
   /// Appends the row of a value of the parameter. `top`: its highest peak; nothing where there is none.
   void add(std::span<const double> line, double parameter, const std::optional<Peak>& top, std::size_t peaks,
-           const integrate::SteadyResponse& response, PointStatus status, std::vector<double>& rows) const;
+           const steady::SteadyResponse& response, PointStatus status, std::vector<double>& rows) const;
   void add_limits(std::span<const double> line, double parameter, const std::optional<Peak>& free,
                   const std::optional<Peak>& stuck, std::vector<double>& rows) const;
   void add_peak(std::span<const double> line, double parameter, long number, const Peak& peak,
                 std::vector<double>& rows) const;
-  void add_optimum(std::span<const double> line, const Optimum& optimum, const integrate::SteadyResponse& response,
+  void add_optimum(std::span<const double> line, const Optimum& optimum, const steady::SteadyResponse& response,
                    std::vector<double>& rows) const;
 
   /// The place of the objective in a row of the main table.
   std::size_t objective() const { return objective_; }
 
  private:
-  void add_response(const std::optional<Peak>& top, const integrate::SteadyResponse& response,
+  void add_response(const std::optional<Peak>& top, const steady::SteadyResponse& response,
                     std::vector<double>& rows) const;
 
   bool is_amplitude_;

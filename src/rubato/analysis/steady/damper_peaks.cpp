@@ -1,5 +1,5 @@
 #include <rubato/analysis/steady/damper_peaks.hpp>
-#include <rubato/integrate/steady/linear_limits.hpp>
+#include <rubato/steady/linear/linear_limits.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ std::string reason_of(const InvalidInput& fault) { return fault.where().file.emp
 
 }  // namespace
 
-DamperPeaks::DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
+DamperPeaks::DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const steady::SteadySolvers& solvers,
                          const std::atomic<bool>& stop)
     : plan_(plan),
       input_(input),
@@ -46,7 +46,7 @@ void DamperPeaks::require_structure(double point) {
       std::make_unique<system::AssembledModel>(build_structure(input_.study, drive_.parameters_at(values_, point)));
   solver_ = make_.response(structure_->system, plan_.request);
   coarse_ = make_.coarse(structure_->system, plan_.request);
-  natural_ = integrate::natural_frequencies(structure_->system);
+  natural_ = steady::natural_frequencies(structure_->system);
   structure_values_ = std::move(wanted);
 }
 
@@ -90,8 +90,8 @@ bool DamperPeaks::take_point(double angular_frequency) {
   return true;
 }
 
-bool DamperPeaks::evaluate(integrate::SteadySolver& solver, double angular_frequency, Vector& values) {
-  solver.solve(excitation_, integrate::SteadyStart::unloaded, response_);
+bool DamperPeaks::evaluate(steady::SteadySolver& solver, double angular_frequency, Vector& values) {
+  solver.solve(excitation_, steady::SteadyStart::unloaded, response_);
   ++solves_;
   const PointStatus status = point_status(response_.status);
   if (status == PointStatus::unbounded && scan_.by_status[static_cast<std::size_t>(status)] == 0)
@@ -166,19 +166,19 @@ std::vector<Peak> DamperPeaks::limit_peaks(double parameter, bool is_stuck) {
         if (stop_.load() || !take_point(w)) return false;
         auto& solver = is_stuck ? stuck_ : free_;
         if (!solver) solver = (is_stuck ? make_.stuck : make_.free)(structure_->system, plan_.request);
-        solver->solve(excitation_, integrate::SteadyStart::unloaded, response_);
+        solver->solve(excitation_, steady::SteadyStart::unloaded, response_);
         values = response_.amplitude;
-        if (response_.status == integrate::SteadyStatus::unbounded) unbounded = w;
-        return response_.status == integrate::SteadyStatus::converged;
+        if (response_.status == steady::SteadyStatus::unbounded) unbounded = w;
+        return response_.status == steady::SteadyStatus::converged;
       },
       range());
   if (unbounded > 0.0) peaks = {{0, unbounded, HUGE_VAL, 0.0, Peak::Kind::interior}};
   return peaks;
 }
 
-const integrate::SteadyResponse& DamperPeaks::response_at(double parameter, double angular_frequency) {
+const steady::SteadyResponse& DamperPeaks::response_at(double parameter, double angular_frequency) {
   response_ = {};
-  response_.status = integrate::SteadyStatus::not_converged;
+  response_.status = steady::SteadyStatus::not_converged;
   if (!take(parameter, false) || !take_point(angular_frequency)) return response_;
   Vector values;
   (void)evaluate(*solver_, angular_frequency, values);

@@ -4,7 +4,7 @@
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/analysis/steady/optimum.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
-#include <rubato/integrate/steady/steady_route.hpp>
+#include <rubato/steady/steady_route.hpp>
 
 #include <array>
 #include <atomic>
@@ -20,7 +20,7 @@ namespace rubato::analysis {
 class DamperPeaks final : public PeakFamily {
  public:
   /// @param stop  asks to give up: then there are no peaks
-  DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
+  DamperPeaks(const DamperCurvePlan& plan, const StudyInput& input, const steady::SteadySolvers& solvers,
               const std::atomic<bool>& stop);
 
   /// Goes on to a line of the sweep.
@@ -34,7 +34,7 @@ class DamperPeaks final : public PeakFamily {
   std::vector<Peak> limit_peaks(double parameter, bool is_stuck);
 
   /// The whole response at a place of the curve. Its status says what became of it.
-  const integrate::SteadyResponse& response_at(double parameter, double angular_frequency);
+  const steady::SteadyResponse& response_at(double parameter, double angular_frequency);
 
   /// What became of the points that were solved for the last `peaks`: how many of each status, and where the first was
   /// that did not converge.
@@ -56,23 +56,23 @@ class DamperPeaks final : public PeakFamily {
   bool take(double parameter, bool begins_afresh);
   bool take_point(double angular_frequency);
   void require_structure(double point);
-  bool evaluate(integrate::SteadySolver& solver, double angular_frequency, Vector& values);
+  bool evaluate(steady::SteadySolver& solver, double angular_frequency, Vector& values);
   PeakRange range();
   PeakRange range_with_extremes();
 
   const DamperCurvePlan& plan_;
   const StudyInput& input_;
-  const integrate::SteadySolvers& make_;
+  const steady::SteadySolvers& make_;
   const std::atomic<bool>& stop_;
 
   ParametricExcitation drive_;
   std::vector<double> values_;  ///< of the swept parameters, and the curve's own
   std::unique_ptr<system::AssembledModel> structure_;
   std::vector<double> structure_values_;  ///< what it was built with
-  std::unique_ptr<integrate::SteadySolver> solver_, coarse_, free_, stuck_;
+  std::unique_ptr<steady::SteadySolver> solver_, coarse_, free_, stuck_;
   Vector natural_;  ///< natural frequencies of both limits [rad/s]
-  integrate::Excitation excitation_;
-  integrate::SteadyResponse response_;
+  system::Excitation excitation_;
+  steady::SteadyResponse response_;
   Vector objective_;  ///< of the coarse scan
   Scan scan_;
   double solves_ = 0.0;

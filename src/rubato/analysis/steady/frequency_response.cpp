@@ -183,7 +183,7 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
 }  // namespace
 
 RunReport run_frequency_response(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input,
-                                 const integrate::SteadySolvers& solvers, RunContext& context) {
+                                 const steady::SteadySolvers& solvers, RunContext& context) {
   const SweepTables layouts{{name, plan, input}, {name, plan}, {name, plan, input}};
   context.progress.begin(name, plan.points(), "points");
   SweepProgress progress(context.progress, input.structure().size() > 100 ? 1 : 64);

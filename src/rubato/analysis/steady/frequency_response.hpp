@@ -2,7 +2,7 @@
 
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/study_input.hpp>
-#include <rubato/integrate/steady/steady_route.hpp>
+#include <rubato/steady/steady_route.hpp>
 
 #include <string>
 
@@ -16,6 +16,6 @@ struct FrequencyResponsePlan;
 ///
 /// @param solvers  of the plan's route, or others
 RunReport run_frequency_response(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input,
-                                 const integrate::SteadySolvers& solvers, RunContext& context);
+                                 const steady::SteadySolvers& solvers, RunContext& context);
 
 }  // namespace rubato::analysis

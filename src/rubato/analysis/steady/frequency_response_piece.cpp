@@ -1,7 +1,7 @@
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
 
 #include <rubato/core/stopping.hpp>
-#include <rubato/integrate/steady/quasi_periodic.hpp>
+#include <rubato/steady/marching/quasi_periodic.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -47,7 +47,7 @@ PieceResult PieceResult::unpacked(const SweepPiece& piece, const SweepTables& ta
 }
 
 PieceSolver::PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input,
-                         const integrate::SteadySolvers& solvers, const SweepTables& tables, SweepProgress& progress,
+                         const steady::SteadySolvers& solvers, const SweepTables& tables, SweepProgress& progress,
                          const std::atomic<bool>& stop)
     : plan_(plan), input_(input), make_(solvers), tables_(tables), progress_(progress), stop_(stop) {}
 
@@ -56,7 +56,7 @@ PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
     Lane lane;
     lane.drive =
         std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
-    if (plan_.route.kind == integrate::SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
+    if (plan_.route.kind == steady::SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
     lane.values.resize(plan_.sweep.names().size());
     lanes_.push_back(std::move(lane));
   }
@@ -107,30 +107,30 @@ void PieceSolver::take_line(Lane& lane, long line) {
   lane.has_limits = plan_.sweep.is_first_but_for(line, others);
 }
 
-void PieceSolver::solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result) {
+void PieceSolver::solve_linear(const RowPlace& place, const system::Excitation& excitation, PieceResult& result) {
   if (!free_) {
-    integrate::SteadyRequest request = plan_.request;
+    steady::SteadyRequest request = plan_.request;
     request.rates = false;
     request.harmonics = {1};
     free_ = make_.free(structure_->system, request);
     stuck_ = make_.stuck(structure_->system, request);
   }
-  free_->solve(excitation, integrate::SteadyStart::unloaded, free_response_);
-  stuck_->solve(excitation, integrate::SteadyStart::unloaded, stuck_response_);
+  free_->solve(excitation, steady::SteadyStart::unloaded, free_response_);
+  stuck_->solve(excitation, steady::SteadyStart::unloaded, stuck_response_);
   tables_.linear.add(place, free_response_, stuck_response_, result.linear);
 }
 
 /// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
-void PieceSolver::march_without_period(Lane& lane, double point, integrate::SteadyResponse& response) {
+void PieceSolver::march_without_period(Lane& lane, double point, steady::SteadyResponse& response) {
   const system::AssembledModel here = build_structure(input_.study, lane.drive->parameters_at(lane.values, point));
-  response = integrate::solve_quasi_periodic(here.system, integrate::marching_options(plan_.route), plan_.request,
-                                             lane.drive->window());
+  response = steady::solve_quasi_periodic(here.system, steady::marching_options(plan_.route), plan_.request,
+                                          lane.drive->window());
   response.harmonics.setConstant(static_cast<Index>(plan_.observed.size()),
                                  static_cast<Index>(plan_.request.harmonics.size()), nothing);
 }
 
-void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
-                               const integrate::SteadyResponse& response, PieceResult& result) {
+void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const system::Excitation& excitation,
+                               const steady::SteadyResponse& response, PieceResult& result) {
   const RowPlace place = place_of(lane, step);
   // Both directions have the same limits.
   if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
@@ -146,8 +146,8 @@ void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, co
 
 void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
   Lane& mine = lane(0);
-  integrate::Excitation& excitation = excitations_[0];
-  integrate::SteadyResponse& response = responses_[0];
+  system::Excitation& excitation = excitations_[0];
+  steady::SteadyResponse& response = responses_[0];
   take_line(mine, piece.first_line);
   bool is_new_line = true;
   for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {

@@ -72,7 +72,7 @@ class SweepProgress {
 class PieceSolver {
  public:
   /// @param stop  asks to leave, also in the midst of a point, which is then not among the rows
-  PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const integrate::SteadySolvers& solvers,
+  PieceSolver(const FrequencyResponsePlan& plan, const StudyInput& input, const steady::SteadySolvers& solvers,
               const SweepTables& tables, SweepProgress& progress, const std::atomic<bool>& stop);
 
   PieceResult solve(const SweepPiece& piece);
@@ -98,11 +98,11 @@ class PieceSolver {
   void forget();
   void take_line(Lane& lane, long line);
   Lane& take_point(long line, std::size_t step);
-  void march_without_period(Lane& lane, double point, integrate::SteadyResponse& response);
-  void solve_linear(const RowPlace& place, const integrate::Excitation& excitation, PieceResult& result);
+  void march_without_period(Lane& lane, double point, steady::SteadyResponse& response);
+  void solve_linear(const RowPlace& place, const system::Excitation& excitation, PieceResult& result);
   void require_structure(Lane& lane, double point);
-  void finish_point(const Lane& lane, long line, std::size_t step, const integrate::Excitation& excitation,
-                    const integrate::SteadyResponse& response, PieceResult& result);
+  void finish_point(const Lane& lane, long line, std::size_t step, const system::Excitation& excitation,
+                    const steady::SteadyResponse& response, PieceResult& result);
   RowPlace place_of(const Lane& lane, std::size_t step) const;
   double point_value(std::size_t step) const;
   double point_number(long line, std::size_t step) const;
@@ -110,18 +110,18 @@ class PieceSolver {
 
   const FrequencyResponsePlan& plan_;
   const StudyInput& input_;
-  const integrate::SteadySolvers& make_;
+  const steady::SteadySolvers& make_;
   const SweepTables& tables_;
   SweepProgress& progress_;
   const std::atomic<bool>& stop_;
 
   std::vector<Lane> lanes_;
-  std::vector<integrate::Excitation> excitations_;
-  std::vector<integrate::SteadyResponse> responses_;
+  std::vector<system::Excitation> excitations_;
+  std::vector<steady::SteadyResponse> responses_;
   std::unique_ptr<system::AssembledModel> structure_;
   std::vector<double> structure_values_;  ///< the structural parameters that it was built with
-  std::unique_ptr<integrate::SteadySolver> solver_, free_, stuck_;
-  integrate::SteadyResponse free_response_, stuck_response_;
+  std::unique_ptr<steady::SteadySolver> solver_, free_, stuck_;
+  steady::SteadyResponse free_response_, stuck_response_;
 };
 
 }  // namespace rubato::analysis

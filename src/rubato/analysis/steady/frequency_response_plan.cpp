@@ -63,9 +63,9 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
                  const std::string& title, const Location& where) {
   using Start = Description::Start;
   using Direction = Description::Direction;
-  plan.start = description.start == Start::unloaded   ? integrate::SteadyStart::unloaded
-               : description.start == Start::previous ? integrate::SteadyStart::previous
-                                                      : integrate::SteadyStart::rest;
+  plan.start = description.start == Start::unloaded   ? steady::SteadyStart::unloaded
+               : description.start == Start::previous ? steady::SteadyStart::previous
+                                                      : steady::SteadyStart::rest;
   if (description.start == Start::previous && plan.structure_follows_point)
     throw InvalidInput(
         place(description.start_where, where),
@@ -89,10 +89,10 @@ void plan_memory(FrequencyResponsePlan& plan, const Description& description, co
     for (std::size_t i = plan.frequencies.size(); i-- > 0;) plan.steps.push_back({i, true});
 }
 
-Route route_of(integrate::SteadyRoute::Kind kind) {
-  return kind == integrate::SteadyRoute::Kind::periodic           ? Route::periodic
-         : kind == integrate::SteadyRoute::Kind::harmonic_balance ? Route::harmonic_balance
-                                                                  : Route::time_marching;
+Route route_of(steady::SteadyRoute::Kind kind) {
+  return kind == steady::SteadyRoute::Kind::periodic           ? Route::periodic
+         : kind == steady::SteadyRoute::Kind::harmonic_balance ? Route::harmonic_balance
+                                                               : Route::time_marching;
 }
 
 /// What is described, with the solver that is taken where none is named.
@@ -173,7 +173,7 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const std::string& title,
                   const Location& where) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
-  if (plan.route.kind == integrate::SteadyRoute::Kind::time_marching) at.allow_no_period();
+  if (plan.route.kind == steady::SteadyRoute::Kind::time_marching) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
   Possibility possibility(title, where);
   for (const long line : {0L, plan.sweep.lines() - 1})
@@ -182,7 +182,7 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const st
         plan.sweep.values(line, values);
         const double point = plan.excitation_factor * frequency;
         const system::AssembledModel structure = build_structure(input.study, at.parameters_at(values, point));
-        integrate::Excitation excitation;
+        system::Excitation excitation;
         at.take_line(values, structure);
         at.take_point(point, excitation);
         if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
@@ -197,7 +197,7 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const st
 
 std::size_t FrequencyResponsePlan::steps_a_piece() const {
   constexpr std::size_t piece = 256;
-  return start == integrate::SteadyStart::previous ? steps.size() : std::min(piece, steps.size());
+  return start == steady::SteadyStart::previous ? steps.size() : std::min(piece, steps.size());
 }
 
 FrequencyResponsePlan plan_frequency_response(const std::string& name, const Location& where,

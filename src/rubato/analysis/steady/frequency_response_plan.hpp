@@ -4,7 +4,7 @@
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
-#include <rubato/integrate/steady/steady_route.hpp>
+#include <rubato/steady/steady_route.hpp>
 
 #include <string>
 #include <vector>
@@ -26,11 +26,11 @@ struct FrequencyResponsePlan {
   ParameterDependence dependence;
   std::vector<Step> steps = {};  ///< of every line, in the order in which they are solved
 
-  integrate::SteadyRoute route = {};
-  integrate::SteadyStart start = integrate::SteadyStart::unloaded;
+  steady::SteadyRoute route = {};
+  steady::SteadyStart start = steady::SteadyStart::unloaded;
   bool has_both_directions = false;
   std::vector<Observed> observed = {};
-  integrate::SteadyRequest request = {};
+  steady::SteadyRequest request = {};
 
   std::vector<bool> waveform_at = {};  ///< of each frequency
   int waveform_points = 0;             ///< 0: none are kept

@@ -25,12 +25,12 @@ LinearTable::LinearTable(const std::string& name, const FrequencyResponsePlan& p
   width_ = layout_.row_width();
 }
 
-void LinearTable::add(const RowPlace& place, const integrate::SteadyResponse& free,
-                      const integrate::SteadyResponse& stuck, std::vector<double>& rows) const {
+void LinearTable::add(const RowPlace& place, const steady::SteadyResponse& free, const steady::SteadyResponse& stuck,
+                      std::vector<double>& rows) const {
   for (std::size_t i = 0; i < place.line.size(); ++i)
     if (is_linear_[i]) rows.push_back(place.line[i]);
   rows.push_back(place.angular_frequency);
-  for (const integrate::SteadyResponse* limit : {&free, &stuck}) {
+  for (const steady::SteadyResponse* limit : {&free, &stuck}) {
     append(limit->amplitude, rows);
     for (Index i = 0; i < limit->harmonics.rows(); ++i) rows.push_back(phase_of(limit->harmonics(i, 0)));
   }
@@ -59,7 +59,7 @@ WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePla
   width_ = layout_.row_width();
 }
 
-void WaveformTable::add(const RowPlace& place, const integrate::Waveform& waveform, std::vector<double>& rows) const {
+void WaveformTable::add(const RowPlace& place, const steady::Waveform& waveform, std::vector<double>& rows) const {
   for (Index p = 0; p < waveform.time.size(); ++p) {
     rows.insert(rows.end(), place.line.begin(), place.line.end());
     if (has_direction_) rows.push_back(place.is_downwards ? 1.0 : 0.0);

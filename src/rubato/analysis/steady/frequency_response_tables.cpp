@@ -16,9 +16,9 @@ using Attributes = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-std::string start_name(integrate::SteadyStart start) {
-  if (start == integrate::SteadyStart::previous) return "previous";
-  return start == integrate::SteadyStart::rest ? "rest" : "unloaded";
+std::string start_name(steady::SteadyStart start) {
+  if (start == steady::SteadyStart::previous) return "previous";
+  return start == steady::SteadyStart::rest ? "rest" : "unloaded";
 }
 
 std::string sweep_name(Sweep::Kind kind) {
@@ -38,14 +38,14 @@ std::string sweep_name(Sweep::Kind kind) {
 Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& input) {
   Attributes attributes{
       {"type", "frequency_response"},
-      {"solver", integrate::route_name(plan.route.kind)},
+      {"solver", steady::route_name(plan.route.kind)},
       {"start", start_name(plan.start)},
       {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
       {"sweep", sweep_name(plan.sweep.kind())},
       {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
       {"frequencies", std::to_string(plan.frequencies.size())},
       {"lines", std::to_string(plan.sweep.lines())}};
-  if (plan.route.kind == integrate::SteadyRoute::Kind::time_marching)
+  if (plan.route.kind == steady::SteadyRoute::Kind::time_marching)
     attributes.emplace_back("method", plan.route.method.name);
   if (plan.route.tolerance > 0.0) attributes.emplace_back("tolerance", fmt::format("{}", plan.route.tolerance));
   return attributes;
@@ -167,7 +167,7 @@ void ResponseTable::add_place(const RowPlace& place, std::vector<double>& rows) 
   rows.push_back(place.angular_frequency);
 }
 
-void ResponseTable::add(const RowPlace& place, double fundamental, const integrate::SteadyResponse& response,
+void ResponseTable::add(const RowPlace& place, double fundamental, const steady::SteadyResponse& response,
                         std::vector<double>& rows) const {
   add_place(place, rows);
   if (has_fundamental_) rows.push_back(fundamental);

@@ -34,7 +34,7 @@ class ResponseTable {
   /// The place of the first amplitude in a row.
   std::size_t amplitudes() const { return amplitudes_; }
   /// Appends the row of a point to `rows`.
-  void add(const RowPlace& place, double fundamental, const integrate::SteadyResponse& response,
+  void add(const RowPlace& place, double fundamental, const steady::SteadyResponse& response,
            std::vector<double>& rows) const;
   /// Appends the row of a point that no model can have.
   void add_impossible(const RowPlace& place, std::vector<double>& rows) const;
@@ -55,7 +55,7 @@ class LinearTable {
   LinearTable(const std::string& name, const FrequencyResponsePlan& plan);
   const results::TableLayout& layout() const { return layout_; }
   std::size_t width() const { return width_; }
-  void add(const RowPlace& place, const integrate::SteadyResponse& free, const integrate::SteadyResponse& stuck,
+  void add(const RowPlace& place, const steady::SteadyResponse& free, const steady::SteadyResponse& stuck,
            std::vector<double>& rows) const;
 
  private:
@@ -70,7 +70,7 @@ class WaveformTable {
   WaveformTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input);
   const results::TableLayout& layout() const { return layout_; }
   std::size_t width() const { return width_; }
-  void add(const RowPlace& place, const integrate::Waveform& waveform, std::vector<double>& rows) const;
+  void add(const RowPlace& place, const steady::Waveform& waveform, std::vector<double>& rows) const;
 
  private:
   results::TableLayout layout_;

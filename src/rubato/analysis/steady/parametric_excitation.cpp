@@ -1,6 +1,6 @@
 #include <rubato/analysis/steady/parametric_excitation.hpp>
-#include <rubato/integrate/steady/add_load.hpp>
 #include <rubato/model/model.hpp>
+#include <rubato/system/add_load.hpp>
 
 #include <fmt/format.h>
 
@@ -125,7 +125,7 @@ bool ParametricExcitation::orders_hold() const {
   const double fundamental = moving->now.angular_frequency / moving->order;
   return fundamental > 0.0 && std::all_of(laws_.begin(), laws_.end(), [&](const Law& law) {
            const double w = law.now.angular_frequency;
-           return law.order == (w > 0.0 ? integrate::order_over(w, fundamental) : 0);
+           return law.order == (w > 0.0 ? system::order_over(w, fundamental) : 0);
          });
 }
 
@@ -134,15 +134,15 @@ void ParametricExcitation::find_orders() {
   for (const Law& law : laws_)
     if (law.now.angular_frequency > 0.0) frequencies.push_back(law.now.angular_frequency);
   if (frequencies.empty()) throw InvalidInput("no load has a frequency above zero: nothing repeats");
-  has_period_ = needs_period_ || integrate::common_fundamental(frequencies).has_value();
+  has_period_ = needs_period_ || system::common_fundamental(frequencies).has_value();
   if (!has_period_) {
     for (Law& law : laws_) law.order = 0;
     return;
   }
-  const double fundamental = integrate::fundamental_of(frequencies);
+  const double fundamental = system::fundamental_of(frequencies);
   for (Law& law : laws_) {
     const double w = law.now.angular_frequency;
-    law.order = w > 0.0 ? integrate::order_over(w, fundamental) : 0;
+    law.order = w > 0.0 ? system::order_over(w, fundamental) : 0;
   }
 }
 
@@ -161,20 +161,20 @@ double ParametricExcitation::window() const {
   return 2.0 * std::numbers::pi * std::max(beats / nearest, periods / slowest);
 }
 
-void ParametricExcitation::fill(integrate::Excitation& out) const {
+void ParametricExcitation::fill(system::Excitation& out) const {
   out.constant.setZero(structure_->system.size());
   out.harmonics.clear();
   for (const auto& load : structure_->loads) {
     if (load.law < 0) {
-      integrate::add_load(load.term, std::get<model::HarmonicLaw>(load.term.law), 0, out);
+      system::add_load(load.term, std::get<model::HarmonicLaw>(load.term.law), 0, out);
       continue;
     }
     const Law& law = laws_[static_cast<std::size_t>(load.law)];
-    integrate::add_load(load.term, model::derivative(law.now, law.derivative + load.derivative), law.order, out);
+    system::add_load(load.term, model::derivative(law.now, law.derivative + load.derivative), law.order, out);
   }
 }
 
-void ParametricExcitation::refresh_limits(integrate::Excitation& out) {
+void ParametricExcitation::refresh_limits(system::Excitation& out) {
   if (is_new_line_) out.limits.setZero(static_cast<Index>(limits_.size()));
   negative_loads_.clear();
   for (std::size_t i = 0; i < limits_.size(); ++i) {
@@ -190,7 +190,7 @@ void ParametricExcitation::refresh_limits(integrate::Excitation& out) {
   }
 }
 
-void ParametricExcitation::take_point(double value, integrate::Excitation& out) {
+void ParametricExcitation::take_point(double value, system::Excitation& out) {
   values_[point_] = value;
   refresh_parameters();
   const bool amplitudes_have_changed = refresh_laws();

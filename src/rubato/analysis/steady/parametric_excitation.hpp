@@ -2,10 +2,10 @@
 
 #include <rubato/analysis/parameter_dependence.hpp>
 #include <rubato/analysis/study_input.hpp>
-#include <rubato/integrate/steady/excitation.hpp>
 #include <rubato/model/load_laws.hpp>
 #include <rubato/numerics/formula.hpp>
 #include <rubato/system/assembled_model.hpp>
+#include <rubato/system/excitation.hpp>
 
 #include <optional>
 #include <span>
@@ -37,7 +37,7 @@ class ParametricExcitation {
   /// Writes the excitation at a point of the line into `out`, which must be the same object for all points of a line.
   /// Throws InvalidInput for values that cannot be: not finite, negative frequencies, and no common period unless that
   /// is allowed: then `out` has the limits alone.
-  void take_point(double value, integrate::Excitation& out);
+  void take_point(double value, system::Excitation& out);
   void allow_no_period() { needs_period_ = false; }
   /// Whether the loads at the last point have a common period.
   bool has_period() const { return has_period_; }
@@ -78,10 +78,10 @@ class ParametricExcitation {
   void evaluate(Value& value, const std::string& part, const char* key) const;
   void refresh_parameters();
   bool refresh_laws();
-  void refresh_limits(integrate::Excitation& out);
+  void refresh_limits(system::Excitation& out);
   bool orders_hold() const;
   void find_orders();
-  void fill(integrate::Excitation& out) const;
+  void fill(system::Excitation& out) const;
 
   const StudyInput& input_;
   const ParameterDependence& dependence_;

@@ -10,19 +10,19 @@ const std::vector<std::string>& status_words() {
   return words;
 }
 
-PointStatus point_status(integrate::SteadyStatus status) {
+PointStatus point_status(steady::SteadyStatus status) {
   switch (status) {
-    case integrate::SteadyStatus::converged:
+    case steady::SteadyStatus::converged:
       return PointStatus::converged;
-    case integrate::SteadyStatus::not_converged:
+    case steady::SteadyStatus::not_converged:
       return PointStatus::not_converged;
-    case integrate::SteadyStatus::subharmonic:
+    case steady::SteadyStatus::subharmonic:
       return PointStatus::subharmonic;
-    case integrate::SteadyStatus::quasi_periodic:
+    case steady::SteadyStatus::quasi_periodic:
       return PointStatus::quasi_periodic;
-    case integrate::SteadyStatus::unbounded:
+    case steady::SteadyStatus::unbounded:
       return PointStatus::unbounded;
-    case integrate::SteadyStatus::drifting:
+    case steady::SteadyStatus::drifting:
       return PointStatus::drifting;
   }
   return PointStatus::not_converged;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/steady/packed_numbers.hpp>
-#include <rubato/integrate/steady/steady_solver.hpp>
+#include <rubato/steady/steady_solver.hpp>
 
 #include <array>
 #include <string>
@@ -16,7 +16,7 @@ inline constexpr std::size_t point_statuses = 7;
 
 /// The words of the column `status`, by PointStatus.
 const std::vector<std::string>& status_words();
-PointStatus point_status(integrate::SteadyStatus status);
+PointStatus point_status(steady::SteadyStatus status);
 
 /// How often something is to be said, and the first place that it is to be said of (a number; -1: none).
 struct Tally {

@@ -59,7 +59,7 @@ ExactFlow::ExactFlow(const system::LocallyNonlinear& system)
       first_order_(states_.size(), 0),
       path_(TaylorPiece::degree + 1) {}
 
-void ExactFlow::set_excitation(const Excitation& excitation) {
+void ExactFlow::set_excitation(const system::Excitation& excitation) {
   piece_.set_excitation(excitation);
   own_loads_ = false;
 }

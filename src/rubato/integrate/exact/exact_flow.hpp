@@ -61,7 +61,7 @@ class ExactFlow {
   explicit ExactFlow(const system::LocallyNonlinear& system);
 
   /// Takes other loads and limits than the system's.
-  void set_excitation(const Excitation& excitation);
+  void set_excitation(const system::Excitation& excitation);
 
   /// Carries a state to t_end.
   /// @param samples    rising times in [state.t, t_end] to visit [s]

@@ -129,12 +129,12 @@ void TaylorPiece::set_pattern() {
 }
 
 // A complex amplitude a is a_r cos(k w t) + a_i cos(k w t + pi/2).
-void TaylorPiece::set_excitation(const Excitation& excitation) {
+void TaylorPiece::set_excitation(const system::Excitation& excitation) {
   limits_ = excitation.limits;
   loads_.clear();
   const bool is_static = excitation.constant.size() > 0 && excitation.constant.cwiseAbs().maxCoeff() > 0.0;
   if (is_static) loads_.push_back({});
-  for (const LoadHarmonic& harmonic : excitation.harmonics) {
+  for (const system::LoadHarmonic& harmonic : excitation.harmonics) {
     const double frequency = harmonic.order * excitation.angular_frequency;
     loads_.push_back({frequency, 0.0, nullptr});
     if (harmonic.amplitude.imag().cwiseAbs().maxCoeff() > 0.0)
@@ -143,7 +143,7 @@ void TaylorPiece::set_excitation(const Excitation& excitation) {
   pattern_.resize(n_, static_cast<Index>(loads_.size()));
   Index column = 0;
   if (is_static) pattern_.col(column++) = excitation.constant;
-  for (const LoadHarmonic& harmonic : excitation.harmonics) {
+  for (const system::LoadHarmonic& harmonic : excitation.harmonics) {
     pattern_.col(column++) = harmonic.amplitude.real();
     if (harmonic.amplitude.imag().cwiseAbs().maxCoeff() > 0.0) pattern_.col(column++) = harmonic.amplitude.imag();
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/integrate/steady/excitation.hpp>
+#include <rubato/system/excitation.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <map>
@@ -30,7 +30,7 @@ class TaylorPiece {
   explicit TaylorPiece(const system::LocallyNonlinear& system);
 
   /// Takes other loads and limits than the system's. Only harmonic loads.
-  void set_excitation(const Excitation& excitation);
+  void set_excitation(const system::Excitation& excitation);
   /// mu N of a slider [N].
   double limit(Index slider) const { return limits_[slider]; }
 

@@ -1,0 +1,90 @@
+#include <rubato/steady/harmonic_balance/condensed_structure_routes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rubato::steady {
+namespace {
+
+constexpr Index most_state_space = 60;  // coordinates: the eigenproblem takes 25 (2n)^3 operations, unsymmetric
+constexpr Index most_dense = 300;       // coordinates, where C is sparse
+constexpr double full = 0.05;           // part of C that is not zero, from which it counts as a full matrix
+
+// kT, or what the structure itself has at the ends of the slider, or anywhere: stiffer springs would take the digits of
+// the rest of Z.
+double holding_stiffness_of(const std::vector<model::Share>& column, double stiffness, const Vector& diagonal) {
+  double of_structure = 0.0;
+  for (const auto& [place, weight] : column)
+    if (weight != 0.0) of_structure = std::max(of_structure, diagonal[place] / (weight * weight));
+  if (!(of_structure > 0.0) && diagonal.size() > 0) of_structure = diagonal.maxCoeff();
+  return of_structure > 0.0 ? std::min(stiffness, of_structure) : stiffness;
+}
+
+// That of a law which does not resist at rest: any will do.
+double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index law, const Vector& diagonal) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Vector memory = Vector::Zero(system.memory_size());
+  const double at_rest =
+      system.laws()[static_cast<std::size_t>(law)].law->at({}, memory.data() + system.memory_of(law)).by_u;
+  const double held =
+      holding_stiffness_of(system.column(system.first_law() + law), at_rest > 0.0 ? at_rest : infinity, diagonal);
+  return std::isfinite(held) ? held : 1.0;
+}
+
+}  // namespace
+
+CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
+                                       const std::vector<SteadyRequest::Observed>& observed) {
+  const Index n = system.size(), sliders = system.slider_count(), m = sliders + system.law_count();
+  columns_ =
+      std::make_unique<Columns>(Columns{system, Vector(m), Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
+  const Vector diagonal = system.stiffness().diagonal();
+  for (Index i = 0; i < m; ++i) {
+    const Index contact = i < sliders ? i : system.first_law() + i - sliders;
+    const std::vector<model::Share> column = system.column(contact);
+    for (const auto& [place, weight] : column) columns_->sliders(place, i) += weight;
+    if (i < sliders) {
+      columns_->slider_stiffness[i] = system.sliders()[static_cast<std::size_t>(i)].stiffness;
+      columns_->holding_stiffness[i] = holding_stiffness_of(column, columns_->slider_stiffness[i], diagonal);
+    } else {
+      columns_->slider_stiffness[i] = columns_->holding_stiffness[i] =
+          holding_stiffness_of_law(system, i - sliders, diagonal);
+    }
+  }
+  const auto entries = static_cast<double>(system.damping().nonZeros());
+  const bool is_small = n <= most_dense || entries > full * static_cast<double>(n) * static_cast<double>(n);
+  factorisation_ = is_small ? dense_factorisation(*columns_) : sparse_factorisation(*columns_);
+  if (is_small) route_ = real_modes(*columns_);
+  if (!route_ && n <= most_state_space) route_ = complex_modes(*columns_);
+}
+
+CondensedStructure::~CondensedStructure() = default;
+CondensedStructure::CondensedStructure(CondensedStructure&&) noexcept = default;
+
+Index CondensedStructure::slider_count() const { return columns_->sliders.cols(); }
+Index CondensedStructure::load_count() const { return columns_->loads.cols(); }
+Index CondensedStructure::observed_count() const { return static_cast<Index>(columns_->observed.size()); }
+
+const Vector& CondensedStructure::holding_stiffness() const { return columns_->holding_stiffness; }
+
+void CondensedStructure::set_loads(const Matrix& patterns) {
+  columns_->loads = patterns;
+  if (route_) route_->set_loads();
+  factorisation_->set_loads();
+}
+
+CondensedStructure::Outcome CondensedStructure::condense(double w, double held, ComplexMatrix& receptance) {
+  Route& route = route_ && held == 0.0 ? *route_ : *factorisation_;
+  return route.condense(w, held, receptance);
+}
+
+void CondensedStructure::expand(double w, double held, const ComplexVector& forces, ComplexVector& position) {
+  (route_ && held == 0.0 ? *route_ : *factorisation_).expand(w, held, forces, position);
+}
+
+double CondensedStructure::highest_frequency() const {
+  return (route_ ? *route_ : *factorisation_).highest_frequency();
+}
+
+}  // namespace rubato::steady

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <rubato/system/excitation.hpp>
+#include <rubato/system/state.hpp>
+
+namespace rubato::steady {
+
+/// The system with the slopes of its laws at rest in K and C, and without the laws and their forces at rest.
+system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system);
+
+/// The state at phase zero of the linear response that is nearer to the response with friction: with all sliders stuck
+/// and without force at rest, where that asks of no slider more than twice its limit, else without sliders. Its slider
+/// forces are kT u, cut at the limits; other laws have their slopes at rest, and have then moved there from rest. Where
+/// the linear response is not finite (a resonance without damping, a free structure under a static load) the state at
+/// rest.
+system::State nearer_linear_limit(const system::LocallyNonlinear& system, const system::Excitation& excitation);
+
+/// Natural frequencies without sliders and with all of them stuck, one limit after the other [rad/s].
+Vector natural_frequencies(const system::LocallyNonlinear& system);
+
+}  // namespace rubato::steady
