@@ -252,7 +252,7 @@ class ReadingVisitor {
   void some_of(const Words&) {}
   void exactly_one_of(const Words&) {}
   void of_words(const char*, const std::vector<std::pair<const char*, Words>>&) {}
-  void rule(const char*) {}
+  void rule(const std::string&) {}
   /// Keys that belong to some words of `type` only: others are refused with the words that take them.
   /// @param kind     "joint"
   /// @param instead  (key, word): what to do then

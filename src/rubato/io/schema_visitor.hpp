@@ -217,7 +217,7 @@ class SchemaVisitor {
     for (const auto& [key, words] : takers) only_for(key, type, words);
   }
   /// A rule in the words of JSON schema.
-  void rule(const char* schema) { rules_.push_back(Json::raw(schema)); }
+  void rule(const std::string& schema) { rules_.push_back(Json::raw(schema)); }
 
   static Json reference(const std::string& definition) {
     return Json::object({{"$ref", Json::text("#/$defs/" + definition)}});

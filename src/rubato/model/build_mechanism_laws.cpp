@@ -1,4 +1,5 @@
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/joints/joint_kinds.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -7,8 +8,6 @@
 
 namespace rubato::model {
 namespace {
-
-using Type = JointDescription::Type;
 
 void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& part) {
   if (law.name.empty()) throw InvalidInput(law.where, fmt::format("{} needs a name", law_kind(law.kind).title));
@@ -34,8 +33,8 @@ LawCoordinate coordinate_of_joint(const MechanismAssembly& assembly, const LawDe
   if (joint == joints.end())
     throw InvalidInput(law.joint_where, fmt::format("{} acts on \"{}\", which is no joint{}", part, law.joint,
                                                     suggestion(law.joint, assembly.joint_names)));
-  if (joint->type == Type::revolute || joint->type == Type::prismatic || joint->type == Type::screw ||
-      joint->type == Type::strut) {
+  const int free = joint_kind(joint->type).free_coordinates;
+  if (free == 1) {
     // Of a screw its angle, which comes first.
     const Mechanism& mechanism = assembly.mechanism;
     const auto& in_plane = mechanism.joint_coordinates;
@@ -43,8 +42,7 @@ LawCoordinate coordinate_of_joint(const MechanismAssembly& assembly, const LawDe
     const auto& in_space = mechanism.space_coordinates;
     if (const auto s = std::find_if(in_space.begin(), in_space.end(), is_called_so); s != in_space.end()) return s->s;
   }
-  const bool leaves_several = joint->type == Type::cylindrical || joint->type == Type::spherical ||
-                              joint->type == Type::universal || joint->type == Type::planar;
+  const bool leaves_several = free > 1;
   throw InvalidInput(
       law.joint_where,
       fmt::format("{} acts on the joint \"{}\", which leaves {}; {}", part, law.joint,

@@ -107,11 +107,7 @@ void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint
       mechanism.drawing.joints.back().axis = {s.along.direction[0], s.along.direction[1], 0.0};
       mechanism.joints.push_back(make_plane_prismatic(joint.name, a, b, s.along.direction, relative));
       break;
-    case Type::cylindrical:
-    case Type::spherical:
-    case Type::universal:
-    case Type::planar:
-    case Type::screw:
+    default:
       throw InvalidInput(joint.where, fmt::format("{}: its type is for mechanisms in space, and this one lies in the "
                                                   "plane; give positions three numbers",
                                                   part));

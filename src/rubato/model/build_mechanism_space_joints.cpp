@@ -1,3 +1,4 @@
+#include <rubato/model/joints/joint_kinds.hpp>
 #include <rubato/model/joints/space_coordinate.hpp>
 #include <rubato/model/joints/space_joints.hpp>
 #include <rubato/model/mechanism_joint_laws.hpp>
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace rubato::model {
@@ -75,7 +77,7 @@ DrawnPoint draw(Mechanism& mechanism, const SpacePoint& point) {
 
 /// In the axes of the first node.
 std::array<double, 3> drawn_axis(Type type, const Matrix3& axes) {
-  if (type == Type::rigid || type == Type::spherical || type == Type::distance || type == Type::strut) return {};
+  if (!joint_kind(type).takes("axis")) return {};
   const Axis axis = axes.col(type == Type::universal ? 0 : 2);
   return {axis[0], axis[1], axis[2]};
 }
@@ -173,13 +175,10 @@ SpaceJointKind kind_of(Type type) {
       return SpaceJointKind::universal;
     case Type::planar:
       return SpaceJointKind::planar;
-    case Type::rigid:
-    case Type::distance:
-    case Type::screw:
-    case Type::strut:
-      break;
+    default:
+      assert(type == Type::rigid);
+      return SpaceJointKind::rigid;
   }
-  return SpaceJointKind::rigid;
 }
 
 SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& joint) {
@@ -187,13 +186,11 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
   built.part = fmt::format("joint \"{}\"", joint.name);
   built.places = take_places(assembly, joint, built.part);
   require_axes(assembly, joint, built);
-  const bool has_no_axis = joint.type == Type::rigid || joint.type == Type::spherical || joint.type == Type::distance ||
-                           joint.type == Type::strut;
   Matrix3 axes = Matrix3::Identity();
   const std::vector<double>& q = assembly.start;
   if (joint.type == Type::universal) {
     axes = axes_of_universal(assembly, joint, built.part);
-  } else if (!has_no_axis) {
+  } else if (joint_kind(joint.type).takes("axis")) {
     require_axis(joint, built.part);
     axes = frame_at(assembly.mechanism.space_node(0), q.data(), Axis::Zero(),
                     assembly.direction(joint.axis, joint.axis_where, built.part, "axis"))
@@ -208,6 +205,10 @@ SpaceJointPlaces places_of(MechanismAssembly& assembly, const JointDescription& 
 }  // namespace
 
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint) {
+  if (!joint_kind(joint.type).in_space)
+    throw InvalidInput(joint.where, fmt::format("joint \"{}\": its type is for mechanisms in the plane, and this one "
+                                                "lies in space; give positions two numbers",
+                                                joint.name));
   const SpaceJointPlaces built = places_of(assembly, joint);
   const auto& [part, places, first, second] = built;
   Mechanism& mechanism = assembly.mechanism;

@@ -2,8 +2,12 @@
 
 #include <rubato/model/description.hpp>
 #include <rubato/model/fields/load_fields.hpp>
+#include <rubato/model/joints/joint_kinds.hpp>
 
 #include <fmt/format.h>
+
+#include <map>
+#include <string_view>
 
 // The keys of bodies and of the joints between them.
 namespace rubato::model {
@@ -102,12 +106,6 @@ void fields(auto& visit, Like<LockDescription> auto& lock) {
   });
 }
 
-/// A joint that turns takes the radius at which it rubs.
-inline bool turns_with_friction(JointDescription::Type type) {
-  using Type = JointDescription::Type;
-  return type == Type::screw || type == Type::revolute || type == Type::cylindrical || type == Type::universal;
-}
-
 void fields(auto& visit, Like<FrictionDescription> auto& friction, JointDescription::Type type) {
   visit.where(friction.where);
   visit.quantity("coefficient", friction.coefficient,
@@ -140,35 +138,35 @@ void fields(auto& visit, Like<FrictionDescription> auto& friction, JointDescript
                "thread of a screw, in the middle of its flanks"});
   visit.check([&](auto& reader) {
     const bool is_screw = type == JointDescription::Type::screw;
-    if (turns_with_friction(type) && !friction.radius)
+    if (joint_kind(type).has_radius_of_friction && !friction.radius)
       reader.refuse_to_lack("radius", fmt::format(", of the {} [m]: the moment is coefficient * load * radius{}",
                                                   is_screw ? "thread in the middle of its flanks" : "pin",
                                                   is_screw ? " / cos^2 of the lead angle" : ""));
-    if (!turns_with_friction(type) && friction.radius)
+    if (!joint_kind(type).has_radius_of_friction && friction.radius)
       throw InvalidInput(friction.radius->where,
                          reader.what() + ": radius belongs to a revolute, cylindrical, universal or screw joint");
   });
 }
 
 /// Which types of joint take a key, of those that not all take.
-inline const std::vector<std::pair<const char*, std::vector<const char*>>>& takers_of_joint_keys() {
-  static const std::vector<const char*> of_one_coordinate{"revolute", "prismatic", "screw", "strut"};
-  static const std::vector<std::pair<const char*, std::vector<const char*>>> takers{
-      {"angle", {"revolute", "screw"}},
-      {"axis", {"revolute", "prismatic", "cylindrical", "universal", "planar", "screw"}},
-      {"damping", of_one_coordinate},
-      {"displacement", {"prismatic"}},
-      {"drive", of_one_coordinate},
-      {"force", {"prismatic", "strut"}},
-      {"friction", {"revolute", "prismatic", "cylindrical", "universal", "planar", "screw", "strut"}},
-      {"lead", {"screw"}},
-      {"length", {"distance"}},
-      {"lock", of_one_coordinate},
-      {"moment", {"revolute", "screw"}},
-      {"rest", of_one_coordinate},
-      {"second_axis", {"universal"}},
-      {"stiffness", of_one_coordinate}};
-  return takers;
+inline std::vector<std::pair<const char*, std::vector<const char*>>> takers_of_joint_keys() {
+  std::map<std::string_view, std::vector<const char*>> takers;
+  for (const JointKind& kind : joint_kinds())
+    for (const char* key : kind.keys) takers[key].push_back(kind.name);
+  std::vector<std::pair<const char*, std::vector<const char*>>> list;
+  for (const auto& [key, names] : takers) list.emplace_back(key.data(), names);
+  return list;
+}
+
+/// Which keys a type of joint needs, in the words of JSON schema.
+inline std::string needed_joint_keys() {
+  std::string rules;
+  for (const JointKind& kind : joint_kinds())
+    if (!kind.needed_keys.empty())
+      rules +=
+          fmt::format(R"({{"if": {{"properties": {{"type": {{"const": "{}"}}}}}}, "then": {{"required": ["{}"]}}}},)",
+                      kind.name, fmt::join(kind.needed_keys, R"(", ")"));
+  return rules;
 }
 
 /// What rubs in a joint that takes no friction can be built of joints that do.
@@ -178,13 +176,9 @@ inline std::string instead_of_joint_key(const std::string& key, const std::strin
   return "; take three revolute joints in a row, with small bodies between them, each with its own friction";
 }
 
-inline const std::vector<Choice<JointDescription::Type>>& joint_types() {
-  using Type = JointDescription::Type;
-  static const std::vector<Choice<Type>> types{
-      {"rigid", Type::rigid},         {"revolute", Type::revolute},       {"prismatic", Type::prismatic},
-      {"distance", Type::distance},   {"cylindrical", Type::cylindrical}, {"spherical", Type::spherical},
-      {"universal", Type::universal}, {"planar", Type::planar},           {"screw", Type::screw},
-      {"strut", Type::strut}};
+inline std::vector<Choice<JointDescription::Type>> joint_types() {
+  std::vector<Choice<JointDescription::Type>> types;
+  for (const JointKind& kind : joint_kinds()) types.push_back({kind.name, kind.type});
   return types;
 }
 
@@ -274,14 +268,14 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
   visit.table("lock", joint.lock, {.says = "a limit of the angle or displacement"});
   visit.excludes("drive", "friction");
   visit.excludes("drive", "lock");
-  visit.rule(R"({"allOf": [
-    {"if": {"properties": {"type": {"enum": ["prismatic", "cylindrical", "planar"]}}}, "then": {"required": ["axis"]}},
-    {"if": {"properties": {"type": {"const": "screw"}}}, "then": {"required": ["axis", "lead"]}},
-    {"if": {"properties": {"type": {"const": "universal"}}}, "then": {"required": ["axis", "second_axis"]}},
-    {"if": {"required": ["friction"],
-            "properties": {"type": {"enum": ["revolute", "cylindrical", "universal", "screw"]}}},
-     "then": {"properties": {"friction": {"required": ["radius"]}}},
-     "else": {"properties": {"friction": {"properties": {"radius": false}}}}}]})");
+  std::vector<const char*> with_radius;
+  for (const JointKind& kind : joint_kinds())
+    if (kind.has_radius_of_friction) with_radius.push_back(kind.name);
+  visit.rule(fmt::format(R"({{"allOf": [{}
+    {{"if": {{"required": ["friction"], "properties": {{"type": {{"enum": ["{}"]}}}}}},
+     "then": {{"properties": {{"friction": {{"required": ["radius"]}}}}}},
+     "else": {{"properties": {{"friction": {{"properties": {{"radius": false}}}}}}}}}}]}})",
+                         needed_joint_keys(), fmt::join(with_radius, R"(", ")")));
 }
 
 }  // namespace rubato::model

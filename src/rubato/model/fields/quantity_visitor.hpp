@@ -109,7 +109,7 @@ class QuantityVisitor {
   void of_words(const char*, const std::vector<std::pair<const char*, std::vector<const char*>>>&) const {}
   void belong(const char*, const std::vector<std::pair<const char*, std::vector<const char*>>>&, const char*,
               const auto&) const {}
-  void rule(const char*) const {}
+  void rule(const std::string&) const {}
 
  private:
   Take take_;

@@ -1,3 +1,4 @@
+#include <rubato/model/joints/joint_kinds.hpp>
 #include <rubato/numerics/rotations.hpp>
 #include <rubato/results/drawing/mechanism_drawing.hpp>
 #include <rubato/results/drawing/structure_drawing.hpp>
@@ -122,10 +123,10 @@ void write_joints(const std::string& analysis, const model::MechanismDrawing& dr
   if (drawn.joints.empty()) return;
   std::vector<std::string> joints;
   for (const auto& joint : drawn.joints) joints.push_back(joint.name);
-  const std::vector<std::string> points = drawing.names(),
-                                 types{"rigid",     "revolute",  "prismatic", "distance", "cylindrical",
-                                       "spherical", "universal", "planar",    "screw",    "strut"},
-                                 laws{"none", "drive", "spring", "force", "damper"}, limits{"none", "stop", "latch"};
+  std::vector<std::string> types;
+  for (const auto& kind : model::joint_kinds()) types.emplace_back(kind.name);
+  const std::vector<std::string> points = drawing.names(), laws{"none", "drive", "spring", "force", "damper"},
+                                 limits{"none", "stop", "latch"};
   const auto rows = sink.open({analysis,
                                "joints",
                                "joint",
