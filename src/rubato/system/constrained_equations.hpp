@@ -45,7 +45,8 @@ class ConstrainedEquations {
     double mass = 1.0, damping = 0.0, stiffness = 0.0;
     double constraint = 0.0;  ///< what E is a share of, over M; 0: the weight of mass
     bool friction = false;    ///< with the slopes of the friction that reactions make, beside G^T
-    bool wary = false;  ///< with secants of slip velocities (Weiszfeld 1937), which never overshoot, for their slopes
+    bool secants = false;     ///< with secants of the directions of slip instead of their slopes: they never overshoot
+                              ///< (Weiszfeld 1937)
   };
   virtual void linearise(const Weights& weights, const Vector& multiplier, Vector& force, Vector& constraint) = 0;
   /// Evaluates G alone, with g.
@@ -63,10 +64,10 @@ class ConstrainedEquations {
   virtual bool has_sliding_reactions() const { return false; }
   /// Whether friction that holds would have to hold more than it can, in a state and with its multipliers; goes there.
   virtual bool lets_go(const State& /*state*/) { return false; }
-  /// From now on friction follows reactions that exceed the multipliers by a share of `lag`, which is those of a step
-  /// that projects its velocities.
+  /// From now on friction follows the multipliers plus `share` times `lag`. The multipliers of a step that projects its
+  /// velocities lag behind the reactions.
   /// @param lag  [c], or empty: nothing
-  virtual void exceed_multipliers(const Vector& /*lag*/, double /*share*/) {}
+  virtual void set_reaction_lag(const Vector& /*lag*/, double /*share*/) {}
   /// Sets the floors of slip velocities for a step of length h from a state; goes there.
   virtual void set_slip_floors(const State& /*from*/, double /*h*/, State& /*to*/) {}
 

@@ -48,7 +48,7 @@ class MechanismEquations final : public ConstrainedEquations {
   void force_of(model::Element::Role role, Vector& out);
   bool has_sliding_reactions() const override;
   bool lets_go(const State& state) override;
-  void exceed_multipliers(const Vector& lag, double share) override;
+  void set_reaction_lag(const Vector& lag, double share) override;
   /// The friction of a joint on its coordinate [N] or [N m].
   double friction_force(std::size_t friction, const Vector& multiplier) const;
   /// What friction can hold: mu N [N] or [N m].

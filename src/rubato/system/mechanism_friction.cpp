@@ -15,7 +15,7 @@ double MechanismEquations::pressing(const model::JointFriction& friction, const 
   return std::sqrt(squared);
 }
 
-void MechanismEquations::exceed_multipliers(const Vector& lag, double share) {
+void MechanismEquations::set_reaction_lag(const Vector& lag, double share) {
   if (!mechanism_.model().frictions.empty()) excess_ = share * lag;
 }
 
@@ -130,7 +130,7 @@ void MechanismEquations::linearise_slip(std::size_t leader, const Weights& weigh
   const auto& frictions = mechanism_.model().frictions;
   const std::size_t both[] = {leader, static_cast<std::size_t>(frictions[leader].partner)};
   const Slip now = slip(leader);
-  const Eigen::Matrix2d& change = weights.wary ? now.secant : now.slope;
+  const Eigen::Matrix2d& change = weights.secants ? now.secant : now.slope;
   const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[leader].joint)];
   const std::size_t k = most_friction_places;
   double slope[2][most_friction_places];

@@ -85,7 +85,7 @@ double SaddleMatrix::gap_norm(const Vector& constraint) const {
   return std::sqrt(squared);
 }
 
-int SaddleMatrix::hardly_held_rows() const {
+int SaddleMatrix::nearly_redundant_rows() const {
   constexpr double left = 10.0 * share;
   int count = 0;
   for (std::size_t r = 0; r < row_seen_.size(); ++r)

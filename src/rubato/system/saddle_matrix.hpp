@@ -65,8 +65,9 @@ class SaddleMatrix {
   /// as the last matrix had them.
   /// @param constraint  g [c]
   double gap_norm(const Vector& constraint) const;
-  /// How many rows leave so little that E weighs a tenth and more: redundant, or in a configuration where they are.
-  int hardly_held_rows() const;
+  /// How many rows are all but redundant: without E less than ten times E is left of their pivots. They repeat other
+  /// rows, or do so in this configuration.
+  int nearly_redundant_rows() const;
   /// The inverse of an entry of the diagonal of M [1/kg].
   double inverse_mass(Index place) const { return inverse_mass_[static_cast<std::size_t>(place)]; }
 

@@ -52,7 +52,7 @@ class ConstrainedStepper final : public Stepper {
     to.slider_force = from.slider_force;
     to.multiplier = from.multiplier;
     to.reaction_lag = from.reaction_lag;
-    equations_.exceed_multipliers(from.reaction_lag, h);
+    equations_.set_reaction_lag(from.reaction_lag, h);
     predict(from, h);
     Iterates iterates{*this, from, h, to};
     switch (numerics::newton(iterates, rules_).outcome) {
@@ -69,7 +69,7 @@ class ConstrainedStepper final : public Stepper {
     const Index worst = equations_.matrix().worst_leak(constraint_, apart);
     if (apart > most_apart * (1.0 + from.q.cwiseAbs().maxCoeff())) return {StepOutcome::overdetermined, worst};
     // Where rows repeat each other always, those that do so at one time only are not told apart from them.
-    const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.matrix().hardly_held_rows() == 0;
+    const bool is_held = !plan_.avoids_singular_ends || usual_ > 0 || equations_.matrix().nearly_redundant_rows() == 0;
     return is_held ? finish(from, h, iterates.is_placed, to) : fault(StepOutcome::singular);
   }
 
@@ -90,8 +90,8 @@ class ConstrainedStepper final : public Stepper {
       s.equations_.go_to_end(to, model::Side::left);
       if (with_tangent) {
         const double mean = (1.0 - s.p_.alpha_f) / (1.0 - s.p_.alpha_m);
-        s.equations_.linearise({1.0, mean * s.p_.gamma * h, s.scale_, 0.0, true, is_wary}, to.multiplier, s.force_,
-                               s.constraint_);
+        s.equations_.linearise({1.0, mean * s.p_.gamma * h, s.scale_, 0.0, true, takes_secants}, to.multiplier,
+                               s.force_, s.constraint_);
       } else {
         s.equations_.residual(s.force_, s.constraint_);
       }
@@ -132,7 +132,7 @@ class ConstrainedStepper final : public Stepper {
         to.correction = iteration.last;
       }
       // The direction of a slow slip turned too far.
-      is_wary = !is_first_correction && s.has_slip_ && !is_wary && ratio > 0.5;
+      takes_secants = !is_first_correction && s.has_slip_ && !takes_secants && ratio > 0.5;
       const bool is_noise = !is_first_correction && size <= noise * s.tolerance_;
       const double before = is_noise && !(ratio < 1.0) ? size : numerics::error_before(size, ratio);
       is_placed = !is_first_correction && before <= negligible * s.tolerance_;
@@ -144,8 +144,8 @@ class ConstrainedStepper final : public Stepper {
     const double h;
     system::State& to;
     bool is_first = true;
-    bool is_wary = false;    // of frictions' slopes
-    bool is_placed = false;  // the last correction moves nothing: `to`, and G, stand where they shall
+    bool takes_secants = false;  // of frictions' slopes
+    bool is_placed = false;      // the last correction moves nothing: `to`, and G, stand where they shall
   };
 
   /// What a first correction leaves of the error. With Newton's own matrix less than nine tenths, but not across a
@@ -218,7 +218,7 @@ class ConstrainedStepper final : public Stepper {
       place(from, h, to);
     }
     if (plan_.projects_velocities && constraint_.size() > 0) {
-      equations_.exceed_multipliers(from.reaction_lag, 0.0);
+      equations_.set_reaction_lag(from.reaction_lag, 0.0);
       if (!project(is_placed, to)) return fault(StepOutcome::singular);
       if (has_followed_reactions_) to.reaction_lag = (1.0 / (h * h)) * constraint_;
     }

@@ -184,7 +184,7 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, dou
   system::MechanismEquations equations(mechanism);
   equations.set_duration(duration);
   refuse_unknown_reactions(where, equations, state);
-  if (!settle_new_velocities(equations, state, 1e-6 * duration))
+  if (!find_phases_of_new_velocities(equations, state, 1e-6 * duration))
     throw InvalidInput(
         where,
         "no accelerations were found at the start that go with the friction of the joints: with "

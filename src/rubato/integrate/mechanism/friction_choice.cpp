@@ -137,7 +137,7 @@ std::vector<char> resting_frictions(system::MechanismEquations& equations, const
     if (candidates[i]) stick_here(model, still, i);
     rests[i] = still.rubbing[i] == model::friction_sticks;
   }
-  if (count > 1 && !let_held_pull(equations, still, rests)) std::fill(rests.begin(), rests.end(), 0);
+  if (count > 1 && !put_held_at_limit(equations, still, rests)) std::fill(rests.begin(), rests.end(), 0);
   return rests;
 }
 
@@ -198,7 +198,7 @@ bool choose_frictions(system::MechanismEquations& equations, system::State& stat
   if (best == nullptr) return false;
   state = first;
   std::vector<char> held(rests.size(), 0);
-  return go(equations, state, resting, best->phase, at_limit) && let_held_pull(equations, state, held);
+  return go(equations, state, resting, best->phase, at_limit) && put_held_at_limit(equations, state, held);
 }
 
 }  // namespace rubato::integrate

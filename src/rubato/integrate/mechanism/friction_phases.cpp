@@ -75,14 +75,15 @@ bool may_change_each_other(const model::Mechanism& model, const std::vector<char
   return follows && std::count(rests.begin(), rests.end(), 1) > 1;
 }
 
-/// The same until nothing that slid turns out to be held by others; it then becomes a candidate, and may pull.
+/// The same until no friction that slid turns out to be held by others. One that is held becomes a candidate, and may
+/// be put at its limit.
 bool decide_with_held(system::MechanismEquations& equations, system::State& state, std::vector<char>& candidates,
                       const std::vector<char>& at_limit) {
   const std::size_t count = candidates.size();
   for (std::size_t round = 0; round <= count; ++round) {
     if (!decide(equations, state, candidates, at_limit)) return false;
     const std::vector<char> last = candidates;
-    if (!let_held_pull(equations, state, candidates)) return false;
+    if (!put_held_at_limit(equations, state, candidates)) return false;
     if (candidates == last) break;
   }
   return true;
@@ -114,11 +115,11 @@ bool is_locked(const model::Mechanism& model, const system::State& state, std::s
   return false;
 }
 
-bool settle_friction(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
-                     double ahead, std::vector<char> at_limit) {
+bool find_friction_phases(system::MechanismEquations& equations, system::State& state, std::vector<char> candidates,
+                          double ahead, std::vector<char> at_limit) {
   const std::size_t count = candidates.size();
   at_limit.resize(count, 0);
-  for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || pulls(state.rubbing[i]);
+  for (std::size_t i = 0; i < count; ++i) candidates[i] = candidates[i] || is_at_limit(state.rubbing[i]);
   bool lets_go = false;  // of two that share a limit: what is left of velocities would be their direction
   for (std::size_t i = 0; i < count; ++i)
     lets_go = lets_go || (at_limit[i] && state.rubbing[i] == friction_sticks &&
@@ -141,7 +142,7 @@ bool settle_friction(system::MechanismEquations& equations, system::State& state
   return at_rest.is_consistent;
 }
 
-bool settle_new_velocities(system::MechanismEquations& equations, system::State& state, double ahead) {
+bool find_phases_of_new_velocities(system::MechanismEquations& equations, system::State& state, double ahead) {
   const auto& frictions = equations.mechanism().model().frictions;
   std::vector<char> candidates(frictions.size(), 0);
   equations.go_to(state, model::Side::right);
@@ -159,7 +160,7 @@ bool settle_new_velocities(system::MechanismEquations& equations, system::State&
     candidates[i] = std::abs(rate) <= std::max(1e-10 * fastest, equations.negligible_rate(i));
     state.rubbing[i] = rate > 0.0 ? friction_slides_up : friction_slides_down;
   }
-  return settle_friction(equations, state, candidates, ahead);
+  return find_friction_phases(equations, state, candidates, ahead);
 }
 
 }  // namespace rubato::integrate

@@ -106,7 +106,7 @@ double excess_of_limit(const system::MechanismEquations& equations, const system
   return at_limit ? excess + clearly * held : excess - round_off * held - equations.negligible_friction(friction);
 }
 
-bool let_held_pull(system::MechanismEquations& equations, system::State& state, std::vector<char>& held) {
+bool put_held_at_limit(system::MechanismEquations& equations, system::State& state, std::vector<char>& held) {
   const auto& model = equations.mechanism().model();
   const std::vector<char> is_held = held_frictions(equations, state);
   if (is_held.size() != model.frictions.size()) return false;
@@ -116,7 +116,7 @@ bool let_held_pull(system::MechanismEquations& equations, system::State& state, 
     held[i] = 1;
     set_friction_phase(
         model, state, i,
-        state.rubbing[i] == model::friction_slides_up ? model::friction_pulls_up : model::friction_pulls_down);
+        state.rubbing[i] == model::friction_slides_up ? model::friction_at_limit_up : model::friction_at_limit_down);
   }
   return true;
 }

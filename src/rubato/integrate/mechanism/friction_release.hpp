@@ -6,8 +6,10 @@
 
 namespace rubato::integrate {
 
-/// Whether it is at its limit, and held by others.
-inline bool pulls(int phase) { return phase == model::friction_pulls_up || phase == model::friction_pulls_down; }
+/// Whether a friction gives all of its limit while other joints hold its coordinate at rest.
+inline bool is_at_limit(int phase) {
+  return phase == model::friction_at_limit_up || phase == model::friction_at_limit_down;
+}
 
 /// A phase for a friction, and for the one that shares its limit.
 void set_friction_phase(const model::Mechanism& model, system::State& state, std::size_t friction, int phase);
@@ -34,9 +36,9 @@ bool goes_backward(system::MechanismEquations& equations, const system::State& s
 double excess_of_limit(const system::MechanismEquations& equations, const system::State& state, std::size_t friction,
                        bool at_limit);
 
-/// What slides, and cannot since others hold it, pulls.
-/// @param held  gets a one for each of them; one for each friction of the model
+/// Puts frictions at their limit that slide by their phase, but whose coordinates other joints hold.
+/// @param held  for each friction of the model: becomes 1 where it was put at its limit
 /// @return false where a matrix cannot be factorised
-bool let_held_pull(system::MechanismEquations& equations, system::State& state, std::vector<char>& held);
+bool put_held_at_limit(system::MechanismEquations& equations, system::State& state, std::vector<char>& held);
 
 }  // namespace rubato::integrate

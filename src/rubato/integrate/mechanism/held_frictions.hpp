@@ -20,13 +20,14 @@ struct FrictionMobility {
 bool find_friction_mobilities(system::MechanismEquations& equations, const system::State& state,
                               const std::vector<std::size_t>& frictions, std::vector<FrictionMobility>& found);
 
-/// Which of the frictions that slide cannot move: other joints that stick, or rigid locks, hold their coordinates. That
-/// is where their mobility is no part of that without them.
-/// What a drive moves is not held: its rate is the drive's.
+/// Which of the frictions that slide cannot move, since other joints that stick, or rigid locks, hold their
+/// coordinates: their mobility is round-off of the mobility without those joints and locks. A coordinate that a drive
+/// moves is not held.
 /// @return one for each friction of the model, or nothing where a matrix cannot be factorised
 std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state);
 
-/// Which of the frictions drives hold at rest that stand still, now and for some time: what they carry nothing tells.
+/// Which of the frictions are held at rest by drives that stand still, now and for some time. Nothing determines what
+/// such frictions carry.
 /// @param ahead  that time [s]
 /// @return one for each friction of the model; none where a matrix cannot be factorised
 std::vector<char> frictions_held_by_drives(system::MechanismEquations& equations, const system::State& state,

@@ -1,5 +1,5 @@
+#include <rubato/integrate/mechanism/active_locks.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
-#include <rubato/integrate/mechanism/met_locks.hpp>
 #include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
@@ -272,7 +272,7 @@ class Search {
   system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
   EquilibriumPlan plan_;
-  MetLocks locks_;
+  ActiveLocks locks_;
   MechanismEquilibrium found_;
   Vector force_, product_, constraint_, next_;
   Vector sizes_;    // what a unit of a coordinate is compared with: the extent, or a radian [n]

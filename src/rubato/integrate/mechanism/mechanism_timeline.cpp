@@ -107,9 +107,9 @@ bool MechanismTimeline::restart(system::State& state) {
   double energy_lost = 0.0;
   bool goes_on = false;
   if (has_drive_jump(state.t))
-    goes_on = project(state, energy_lost) && settle_new_velocities(equations_, state, ahead());
+    goes_on = project(state, energy_lost) && find_phases_of_new_velocities(equations_, state, ahead());
   else
-    goes_on = settle_friction(equations_, state, std::vector<char>(old.size(), 0), ahead());
+    goes_on = find_friction_phases(equations_, state, std::vector<char>(old.size(), 0), ahead());
   note_standing_drives(state.t);
   note_friction(old, state);
   if (!goes_on || !release(state)) return false;
@@ -170,7 +170,7 @@ bool MechanismTimeline::release(system::State& state) {
     state.phase[i] = model::lock_open;
     events_.push_back({state.t, static_cast<int>(i), false, 0.0});
     const std::vector<int> old = state.rubbing;
-    if (!settle_friction(equations_, state, std::vector<char>(old.size(), 0), ahead())) return false;
+    if (!find_friction_phases(equations_, state, std::vector<char>(old.size(), 0), ahead())) return false;
     note_friction(old, state);
   }
   return true;
@@ -182,7 +182,7 @@ bool MechanismTimeline::is_watched(std::size_t lock, const system::State& state)
     return false;  // what sticks at its stop lies beyond it by round-off, and comes no nearer
   if (lock >= row_.size()) {
     const std::size_t friction = lock - row_.size();
-    if (pulls(state.rubbing[friction]) || equations_.is_led(friction)) return false;
+    if (is_at_limit(state.rubbing[friction]) || equations_.is_led(friction)) return false;
     return state.rubbing[friction] != model::friction_free || !is_locked(mechanism_.model(), state, friction);
   }
   return !(mechanism_.model().locks[lock].is_latch && state.phase[lock] == model::lock_engaged);
@@ -239,8 +239,8 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
     has_impact = true;
   }
   const bool is_settled = has_impact
-                              ? settle_new_velocities(equations_, state, ahead())
-                              : settle_friction(equations_, state, rubbing.candidates, ahead(), rubbing.at_limit);
+                              ? find_phases_of_new_velocities(equations_, state, ahead())
+                              : find_friction_phases(equations_, state, rubbing.candidates, ahead(), rubbing.at_limit);
   note_standing_drives(state.t);
   note_friction(old, state);
   if (!is_settled || !release(state) || chattering_ >= 0) return Passage::fails;

@@ -29,7 +29,7 @@ struct LockEvent {
 ///   slides                    s' in the direction in which it slides; of two that share a limit their slip velocity
 ///                             along that at the start of the step
 ///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
-///   pulls while others hold   nothing: they are watched
+///   at limit, held by others  nothing: the others are watched
 ///   held by drives that stand a drive that stood when it was left out moves
 ///
 /// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and

@@ -65,8 +65,8 @@ MechanismTimeline::Rubbing MechanismTimeline::rubbing_after(const system::State&
     }
     if (!has_stuck) continue;
     result.at_limit[i] = 1;
-    for (std::size_t k = 0; k < state.rubbing.size(); ++k)  // what pulls may give way first
-      result.at_limit[k] = result.at_limit[k] || pulls(state.rubbing[k]);
+    for (std::size_t k = 0; k < state.rubbing.size(); ++k)  // a friction at its limit may give way first
+      result.at_limit[k] = result.at_limit[k] || is_at_limit(state.rubbing[k]);
   }
   return result;
 }

@@ -24,8 +24,8 @@ struct Motion {
   Side side = Side::right;           ///< which limit of a law that jumps at t
   const double* q = nullptr;         ///< all numbers of all nodes
   const double* v = nullptr;         ///< [n], after a zero: v[ground] is the velocity of whatever is fixed
-  const int* phase = nullptr;        ///< of the locks: see JointLock
-  const int* rubbing = nullptr;      ///< of the joints with friction: see JointFriction
+  const int* phase = nullptr;        ///< of the locks: see LockPhase
+  const int* rubbing = nullptr;      ///< of the joints with friction: see FrictionPhase
   const double* stuck_at = nullptr;  ///< where they last stuck [rad] or [m]
   LawHistory laws = {};
 };

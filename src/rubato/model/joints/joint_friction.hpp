@@ -16,22 +16,23 @@ enum FrictionPhase : int {
   friction_sticks = 1,
   friction_slides_up = 2,    ///< s grows
   friction_slides_down = 3,  ///< s shrinks
-  friction_pulls_up = 4,     ///< at rest, held by other joints that stick, while it gives all its friction against the
-                             ///< way up: no event watches its rate, which is round-off
-  friction_pulls_down = 5,   ///< the same against the way down
+  /// At rest, since other joints that stick hold it, while it gives all its friction against the way up. No event
+  /// watches its rate, which is round-off.
+  friction_at_limit_up = 4,
+  friction_at_limit_down = 5,  ///< the same against the way down
 };
 
 /// Whether nothing moves in the joint.
 inline bool is_at_rest(int phase) {
-  return phase == friction_sticks || phase == friction_pulls_up || phase == friction_pulls_down;
+  return phase == friction_sticks || phase == friction_at_limit_up || phase == friction_at_limit_down;
 }
 
 /// Coulomb friction on the coordinate s of a joint, with the limit L = mu (preload + |pressing multipliers|), of an
 /// angle times the radius of the pin, of a screw times radius/cos^2(lead angle) of its thread:
 ///
-///   slides   the force -sign(s') L on s, sign(s') by the phase
-///   sticks   the constraint s = where it stopped, until its multiplier reaches L
-///   pulls    the force of one that slides, while others that stick hold s; until one of these lets go
+///   slides    the force -sign(s') L on s, sign(s') by the phase
+///   sticks    the constraint s = where it stopped, until its multiplier reaches L
+///   at limit  the force of sliding, while other frictions that stick hold s; until one of these lets go
 ///
 /// The multipliers are those of the same instant.
 ///
@@ -63,8 +64,8 @@ struct JointFriction {
 
 /// The direction in which a joint slides, or is pulled with all its friction: +1, -1, or 0 if neither.
 inline double sliding_direction(int phase) {
-  if (phase == friction_slides_up || phase == friction_pulls_up) return 1.0;
-  return phase == friction_slides_down || phase == friction_pulls_down ? -1.0 : 0.0;
+  if (phase == friction_slides_up || phase == friction_at_limit_up) return 1.0;
+  return phase == friction_slides_down || phase == friction_at_limit_down ? -1.0 : 0.0;
 }
 
 /// While two frictions that share a limit slide, State::stuck_at holds of each a component of the floor w: of a slip

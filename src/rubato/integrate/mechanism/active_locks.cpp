@@ -1,44 +1,44 @@
-#include <rubato/integrate/mechanism/met_locks.hpp>
+#include <rubato/integrate/mechanism/active_locks.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace rubato::integrate {
 
-MetLocks::MetLocks(const system::Mechanism& mechanism, const system::State& given) : mechanism_(mechanism) {
+ActiveLocks::ActiveLocks(const system::Mechanism& mechanism, const system::State& given) : mechanism_(mechanism) {
   const auto& locks = mechanism.model().locks;
   for (std::size_t i = 0; i < locks.size(); ++i)
     holds_for_good_.push_back(locks[i].is_latch && given.phase[i] == model::lock_engaged);
 }
 
-double MetLocks::beyond(std::size_t lock, const Vector& q) const {
+double ActiveLocks::beyond(std::size_t lock, const Vector& q) const {
   const model::Lock& of = mechanism_.model().locks[lock];
   return of.sign * (of.s.value(q.data()) - of.at);
 }
 
-double MetLocks::nothing(std::size_t lock, double extent) const {
+double ActiveLocks::nothing(std::size_t lock, double extent) const {
   constexpr double share = 1e-9;
   return share * (mechanism_.model().locks[lock].s.is_angle() ? 1.0 : extent);
 }
 
-bool MetLocks::may_change(std::size_t lock) {
+bool ActiveLocks::may_change(std::size_t lock) {
   constexpr int most_a_lock = 20;
   if (changes_ < most_a_lock * static_cast<int>(holds_for_good_.size())) return ++changes_, true;
   unsettled_ = static_cast<int>(lock);
   return false;
 }
 
-bool MetLocks::any_open(const system::State& state) const {
+bool ActiveLocks::any_open(const system::State& state) const {
   return std::any_of(state.phase.begin(), state.phase.end(), [](int phase) { return phase == model::lock_open; });
 }
 
-bool MetLocks::passes(const system::State& state, const Vector& q, double extent) const {
+bool ActiveLocks::passes(const system::State& state, const Vector& q, double extent) const {
   for (std::size_t i = 0; i < holds_for_good_.size(); ++i)
     if (state.phase[i] == model::lock_open && beyond(i, q) > nothing(i, extent)) return true;
   return false;
 }
 
-bool MetLocks::meet(system::State& state, double extent) {
+bool ActiveLocks::meet(system::State& state, double extent) {
   bool has_met = false;
   for (std::size_t i = 0; i < holds_for_good_.size(); ++i) {
     if (state.phase[i] != model::lock_open || !(beyond(i, state.q) > nothing(i, extent)) || !may_change(i)) continue;
@@ -48,7 +48,7 @@ bool MetLocks::meet(system::State& state, double extent) {
   return has_met;
 }
 
-bool MetLocks::release(system::State& state, double extent) {
+bool ActiveLocks::release(system::State& state, double extent) {
   constexpr double share = 1e-9;  // of the largest reaction: that of a lock which nothing presses
   const double no_force = share * (state.multiplier.size() > 0 ? state.multiplier.cwiseAbs().maxCoeff() : 0.0);
   bool has_released = false;

@@ -6,13 +6,12 @@
 
 namespace rubato::integrate {
 
-/// Which locks hold while an equilibrium is looked for: those that the way to it meets, until they would have to pull.
-/// What the way leads beyond engages where it does, so that nothing falls through its stop; what then pulls at a place
-/// where all forces balance lets go. A latch that held at the start holds for good; one that is met is tried like a
-/// stop.
-class MetLocks {
+/// The active set of locks while an equilibrium is looked for. A lock engages where the search would pass beyond it, so
+/// that nothing falls through a stop. A stop lets go where all forces balance and it would have to pull. A latch that
+/// held at the start holds for good; one that is met on the way is tried like a stop.
+class ActiveLocks {
  public:
-  MetLocks(const system::Mechanism& mechanism, const system::State& given);
+  ActiveLocks(const system::Mechanism& mechanism, const system::State& given);
 
   /// Whether a lock is open that might be met.
   bool any_open(const system::State& state) const;
@@ -31,7 +30,7 @@ class MetLocks {
  private:
   bool may_change(std::size_t lock);
   double beyond(std::size_t lock, const Vector& q) const;
-  /// A way beyond a lock that is none [rad] or [m].
+  /// How far beyond a lock counts as not beyond it [rad] or [m].
   double nothing(std::size_t lock, double extent) const;
 
   const system::Mechanism& mechanism_;
