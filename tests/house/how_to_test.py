@@ -1,9 +1,11 @@
 """Do what a how-to page says, in a copy of the tree.
 
-Usage: how_to_test.py ROOT PAGE FOLDER [OPTION ...], with options for cmake. Blocks of the page in C++ that begin with `// PATH` are written there; blocks of
-diff are applied; the command is built; the block of TOML is run, and what the line `<!-- check: ... -->` says must hold:
+Usage: how_to_test.py ROOT PAGE FOLDER [OPTION ...], with options for cmake; or how_to_test.py ROOT PAGE FOLDER --apply.
+Blocks of the page in C++ that begin with `// PATH` are written there; blocks of diff are applied, and with --apply that is all.
+Else the command is built; the block of TOML is run, and what the line `<!-- check: ... -->` says must hold:
 
     check: TABLE.csv COLUMN = COLUMN within BOUND       columns by the beginning of their names; of the largest value
+    check: TABLE.csv COLUMN = NUMBER within BOUND       in every row
     check: TABLE.csv = TABLE.csv                        to the last digit
 """
 import csv
@@ -56,7 +58,8 @@ def check(what, results):
         return
     table, first, second, bound = re.fullmatch(r"(\S+\.csv) (\S+) = (\S+) within (\S+)", what).groups()
     read = rows(results / table)
-    one, other = column(read, first), column(read, second)
+    one = column(read, first)
+    other = [float(second)] * len(one) if re.fullmatch(r"-?[\d.]+(e-?\d+)?", second) else column(read, second)
     apart = max(abs(a - b) for a, b in zip(one, other)) / max(map(abs, one))
     print(f"{what}: {apart:.2g}")
     if not apart <= float(bound):
@@ -67,7 +70,8 @@ text = page.read_text()
 shutil.rmtree(folder, ignore_errors=True)
 tree = folder / "tree"
 tree.mkdir(parents=True)
-for name in SOURCES:
+only_applies = sys.argv[4:] == ["--apply"]
+for name in ["src"] if only_applies else SOURCES:
     source = root / name
     if source.is_dir():
         shutil.copytree(source, tree / name, symlinks=False)
@@ -78,6 +82,9 @@ for block in blocks(text, "cpp"):
         (tree / found.group(1)).write_text(block[found.end():])
 for block in blocks(text, "diff"):
     apply(block, tree)
+if only_applies:
+    shutil.rmtree(folder)
+    sys.exit()
 build = tree / "build" / "audit"
 subprocess.run(["cmake", "-S", tree, "-B", build, "-G", "Ninja", "-DRUBATO_BUILD_TESTS=OFF", *sys.argv[4:]],
                check=True, stdout=subprocess.DEVNULL)

@@ -75,8 +75,8 @@ void name_by_number(model::StudyDescription& study) {
     if constexpr (requires { task.observe->begin(); }) {
       if (!task.observe) return;
       for (auto& observation : *task.observe) name_by_number(names, observation);
-    } else if (task.observe) {
-      name_by_number(names, *task.observe);
+    } else if constexpr (requires { task.observe; }) {
+      if (task.observe) name_by_number(names, *task.observe);
     }
   };
   for (auto& analysis : study.analyses) std::visit(name_all, analysis.task);
