@@ -3,6 +3,7 @@
 #
 #   scripts/install-dependencies.sh            what a build and the tests need
 #   scripts/install-dependencies.sh --build    what a build needs, and nothing for the tests
+#   scripts/install-dependencies.sh --tidy     also clang-tidy, which the slow tests run
 #   scripts/install-dependencies.sh --bench    also the integrators that the benchmarks measure Rubato against
 #
 # Works as root and as a user with sudo. Asks no network for what is already there.
@@ -14,12 +15,15 @@ build=(g++ cmake ninja-build python3 libeigen3-dev libfmt-dev libtomlplusplus-de
 tests=(libgtest-dev libgmock-dev python3-jsonschema python3-numpy python3-scipy clang-format chromium chromium-driver)
 bench=(libbenchmark-dev libboost-dev libsundials-dev)
 
+tidy=(clang-tidy)
+
 packages=("${build[@]}" "${tests[@]}")
 for argument in "$@"; do
   case $argument in
     --build) packages=("${build[@]}") ;;
+    --tidy) packages=("${build[@]}" "${tests[@]}" "${tidy[@]}") ;;
     --bench) packages=("${build[@]}" "${tests[@]}" "${bench[@]}") ;;
-    *) sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
   esac
 done
 # Other packagings of Node.js bring npm along and refuse Debian's beside it.
