@@ -1,0 +1,35 @@
+"""Fail if a folder with more than a dozen files has no README.md, or if that tells of files that are not there.
+
+Usage: check_readmes.py ROOT. Of the folders that git follows. What stands in backticks in the first column of a table must
+be how the name of a file or folder begins.
+"""
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+
+most = 12
+root = pathlib.Path(sys.argv[1]).resolve()
+named = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True)
+if named.returncode:
+    print("not a working copy of git")
+    sys.exit(77)
+files = collections.defaultdict(set)
+for name in named.stdout.splitlines():
+    path = root / name
+    if path.exists():
+        files[path.parent].add(path.name)
+
+faults = []
+for folder, names in sorted(files.items()):
+    count = len(names - {"README.md", "CMakeLists.txt"})
+    if count > most and "README.md" not in names:
+        faults.append(f"{folder.relative_to(root)}: {count} files and no README.md")
+    if count > most and "README.md" in names:
+        for row in re.findall(r"^\| (`.*?) \|", (folder / "README.md").read_text(), re.MULTILINE):
+            for said in re.findall(r"`([\w./-]+)[*]?[^`]*`", row):
+                if not said.startswith(("_", "...")) and not list(folder.glob(said.rstrip("/.") + "*")):
+                    faults.append(f"{folder.relative_to(root)}/README.md names {said}, which is not there")
+print("\n".join(faults) or f"{len(files)} folders, none of more than {most} files without a README.md")
+sys.exit(bool(faults))
