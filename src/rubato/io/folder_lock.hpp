@@ -19,7 +19,7 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Why others are not kept out; empty where they are.
+  /// Why other processes are not kept out; empty where they are.
   const std::string& warning() const { return warning_; }
   /// What has become of the folder since: "was deleted or moved", "was emptied"; empty where it is as it was.
   std::string loss() const;

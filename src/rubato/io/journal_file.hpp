@@ -23,8 +23,8 @@ std::string fingerprint_of(const model::StudyDescription& study, const SourceFil
 ///   number of the piece, number of its values, checksum     three whole numbers of 64 bits
 ///   the values                                              numbers of 64 bits
 ///
-/// in the order of bytes of the machine. The checksum is over fingerprint, number, count and values, so that a record
-/// is whole, in its place and of this journal, or it does not count. Neither does what follows a record that does not.
+/// in the order of bytes of the machine. The checksum is over fingerprint, number, count and values. A record counts
+/// only if it is whole, in its place and of this journal; records after one that does not count are not read.
 class JournalFile final : public results::Journal {
  public:
   /// Opens the journal of an interrupted run, or begins a new one where there is none.
@@ -43,7 +43,7 @@ class JournalFile final : public results::Journal {
   void remove();
   /// What is wrong with the journal that was found, and how many pieces are kept of it; empty where nothing is.
   const std::string& damage() const { return damage_; }
-  /// Whether that is no more than a last piece without its end, as a killed run leaves it.
+  /// Whether the only fault is a last piece without its end, as a killed run leaves it.
   bool is_cut_short() const { return is_cut_short_; }
 
  private:

@@ -39,13 +39,13 @@ class NetcdfFile {
   void make_room(double bytes);
   /// Makes everything written so far readable on disk.
   void sync();
-  /// It holds what a former file may be given up for.
+  /// From now on the file holds enough to replace a former file.
   void note_worth() { has_worth_ = true; }
-  /// Takes its name, after a sync, unless there is a former file and nothing worth it.
+  /// Takes its name, after a sync, unless there is a former file and too little to replace it.
   void publish();
   /// May be asked by any thread.
   bool is_published() const { return is_published_; }
-  /// Whether its name still leads to it.
+  /// Whether its name still leads to this file.
   bool is_there();
   void close();
 
