@@ -372,7 +372,7 @@ class Marcher {
 AdaptiveReport march(Stepper& stepper, Estimator& estimator, const StepPlan& plan, Timeline& timeline,
                      system::State& state, double end, Observer* observer, TryLog* log) {
   Marcher marcher(stepper, estimator, plan, timeline, state, end, observer, log);
-  const AdaptiveReport report = marcher.run();
+  AdaptiveReport report = marcher.run();
   state = marcher.state();
   return report;
 }

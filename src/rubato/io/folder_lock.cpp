@@ -108,7 +108,7 @@ std::string FolderLock::loss() const {
 std::string writer_of(const std::filesystem::path& folder) {
   const int file = ::open((folder / ".rubato-lock").c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return {};
-  const std::string writer = try_lock(file, LOCK_SH) == EWOULDBLOCK ? writing(owner_in(file)) : "";
+  std::string writer = try_lock(file, LOCK_SH) == EWOULDBLOCK ? writing(owner_in(file)) : "";
   ::close(file);
   return writer;
 }

@@ -70,7 +70,7 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
                                    part, is_angle ? "moment" : "force"));
   const std::string its_drive = part + ": drive";
   const auto* formula = std::get_if<TimeFormulaDescription>(&drive.law);
-  const MotionLaw law =
+  MotionLaw law =
       formula
           ? MotionLaw(build_motion(*formula, assembly.parameters, its_drive))
           : MotionLaw(build_motion(std::get<TableDescription>(drive.law), assembly.parameters, its_drive, drive.where));
