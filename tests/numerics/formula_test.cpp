@@ -137,17 +137,44 @@ TEST(Formula, HasExactDerivativesOfAPowerAtZero) {
   EXPECT_EQ(Formula("t^1", {}, true).derivatives(0.0).rate, 1.0);
 }
 
+// Against differences, for every operation; the value keeps the bits of the formula without its slope.
+TEST(Formula, HasTheSlopeOfEveryOperation) {
+  for (const char* text :
+       {"-s + 2*v", "s/v - v/s", "s^3 + v^2.5", "s^v", "2^s", "(s - v)^2", "sin(s*v) + cos(s)", "exp(-s)*log(v)",
+        "sqrt(s) + tanh(v)", "atan2(s, v)", "abs(v - s)*s", "min(s, v)*s", "max(s, 2*v)", "rint(s) + v*sign(s - v)",
+        "s > v ? s*s : v*v", "s < v && v > 0 ? s : v*s*s", "(s*v)^-1.5", "t*s*s"}) {
+    const Formula formula(text, parameters, true, {"s", "v"});
+    const double h = 1e-6, t = 0.7;
+    for (const std::array<double, 2> at : {std::array{0.3, 1.7}, {2.2, 0.4}, {1.1, 1.9}}) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        std::array<double, 2> before = at, after = at;
+        before[i] -= h;
+        after[i] += h;
+        const ValueAndSlope found = formula.with_slope(i, t, at);
+        EXPECT_EQ(found.value, formula(t, at)) << text;
+        EXPECT_NEAR(found.slope, (formula(t, after) - formula(t, before)) / (2.0 * h),
+                    1e-7 * (1 + std::abs(found.slope)))
+            << text << " by " << i << " at " << at[0] << ", " << at[1];
+      }
+    }
+  }
+  const Formula power("s^3", parameters, true, {"s", "v"});
+  EXPECT_EQ(power.with_slope(0, 0.0, std::array{0.0, 0.0}).slope, 0.0);
+  EXPECT_EQ(Formula("s^1", parameters, true, {"s"}).with_slope(0, 0.0, std::array{0.0}).slope, 1.0);
+  EXPECT_DOUBLE_EQ(power.with_slope(0, 0.0, std::array{1e-120, 0.0}).slope, 3e-240);  // the value is below every number
+}
+
 // d/ds and d/dv of s^2 v + t s at s = 3, v = 2, t = 5, and of the branch that is taken.
 TEST(Formula, HasSlopesByOtherValues) {
   const Formula smooth("s^2*v + t*s", parameters, true, {"s", "v"});
   const std::vector<double> at{3.0, 2.0};
   EXPECT_DOUBLE_EQ(smooth(5.0, at), 33.0);
-  EXPECT_DOUBLE_EQ(smooth.slope(0, 5.0, at), 17.0);
-  EXPECT_DOUBLE_EQ(smooth.slope(1, 5.0, at), 9.0);
+  EXPECT_DOUBLE_EQ(smooth.with_slope(0, 5.0, at).slope, 17.0);
+  EXPECT_DOUBLE_EQ(smooth.with_slope(1, 5.0, at).slope, 9.0);
   const Formula branches("s > 1 ? max(s, v)*speed : tau*v", parameters, true, {"s", "v"});
-  EXPECT_DOUBLE_EQ(branches.slope(0, 5.0, at), 20.0);
-  EXPECT_DOUBLE_EQ(branches.slope(1, 5.0, at), 0.0);
-  EXPECT_DOUBLE_EQ(branches.slope(1, 5.0, std::vector<double>{0.5, 2.0}), 0.3);
+  EXPECT_DOUBLE_EQ(branches.with_slope(0, 5.0, at).slope, 20.0);
+  EXPECT_DOUBLE_EQ(branches.with_slope(1, 5.0, at).slope, 0.0);
+  EXPECT_DOUBLE_EQ(branches.with_slope(1, 5.0, std::vector<double>{0.5, 2.0}).slope, 0.3);
 }
 
 }  // namespace

@@ -103,20 +103,66 @@ struct Values {
   static double greatest(double a, double b) { return b > a ? b : a; }
 };
 
-/// The same, with derivatives: by t, or by one of the further values.
+/// The same, with the first derivative by one of the further values.
+struct Slopes {
+  using Real = ValueAndSlope;
+  double t;
+  std::span<const double> others;
+  std::size_t by;
+
+  static Real constant(double value) { return {value, 0.0}; }
+  Real time() const { return {t, 0.0}; }
+  Real other(std::size_t which) const {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    if (which >= others.size()) return {unknown, unknown};
+    return {others[which], which == by ? 1.0 : 0.0};
+  }
+  static double value(const Real& a) { return a.value; }
+  static Real negative(const Real& a) { return {-a.value, -a.slope}; }
+  static Real sum(const Real& a, const Real& b) { return {a.value + b.value, a.slope + b.slope}; }
+  static Real difference(const Real& a, const Real& b) { return {a.value - b.value, a.slope - b.slope}; }
+  static Real product(const Real& a, const Real& b) {
+    return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+  }
+  static Real quotient(const Real& a, const Real& b) {
+    const double value = a.value / b.value;
+    return {value, (a.slope - value * b.slope) / b.value};
+  }
+  static Real power(const Real& a, const Real& b) {
+    const double value = std::pow(a.value, b.value);
+    if (b.slope != 0.0) return {value, value * (b.slope * std::log(a.value) + b.value * a.slope / a.value)};
+    // A factor of zero rules, whatever a negative power of zero is.
+    if (b.value == 0.0) return {value, 0.0};
+    const bool in_range = value != 0.0 && std::isfinite(value);
+    return {value, b.value * (in_range ? value / a.value : std::pow(a.value, b.value - 1.0)) * a.slope};
+  }
+  static Real angle(const Real& y, const Real& x) {
+    return {std::atan2(y.value, x.value),
+            (y.slope * x.value - y.value * x.slope) / (x.value * x.value + y.value * y.value)};
+  }
+  static Real function(const FormulaFunction& f, const Real& a) {
+    const D outer = f.derivatives(a.value);
+    return {outer.value, outer.rate * a.slope};
+  }
+  static Real magnitude(const Real& a) { return a.value < 0.0 ? negative(a) : Real{std::abs(a.value), a.slope}; }
+  static Real step(double value) { return {value, 0.0}; }
+  static Real rounded(const Real& a) { return step(std::floor(a.value + 0.5)); }
+  static int compared(const Real& a, const Real& b) { return order(a.value, b.value); }
+  static Real least(const Real& a, const Real& b) { return b.value < a.value ? b : a; }
+  static Real greatest(const Real& a, const Real& b) { return b.value > a.value ? b : a; }
+};
+
+/// The same, with the derivatives by t.
 struct Derivatives {
   using Real = D;
   double t;
   int direction = 0;  // of a limit
-  std::span<const double> others = {};
-  const std::size_t* by = nullptr;  // none: by t
 
-  D constant(double value) const { return {value, 0.0, 0.0}; }
-  D time() const { return {t, by ? 0.0 : 1.0, 0.0}; }
-  D other(std::size_t which) const {
+  static D constant(double value) { return {value, 0.0, 0.0}; }
+  D time() const { return {t, 1.0, 0.0}; }
+  static D other(std::size_t) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (!by || which >= others.size()) return {unknown, unknown, unknown};
-    return {others[which], which == *by ? 1.0 : 0.0, 0.0};
+    return {unknown, unknown, unknown};
   }
   static double value(const D& a) { return a.value; }
   static D negative(const D& a) { return {-a.value, -a.rate, -a.second_rate}; }
@@ -295,8 +341,8 @@ TimeDerivatives Formula::part(int node, double t, int direction) const {
   return evaluate(tree_, node, Derivatives{t, direction});
 }
 
-double Formula::slope(std::size_t other, double t, std::span<const double> others) const {
-  return evaluate(tree_, whole(), Derivatives{t, 0, others, &other}).rate;
+ValueAndSlope Formula::with_slope(std::size_t other, double t, std::span<const double> others) const {
+  return evaluate(tree_, whole(), Slopes{t, others, other});
 }
 
 bool Formula::uses_time() const { return has_kind(tree_, Kind::time); }

@@ -10,6 +10,10 @@
 
 namespace rubato::numerics {
 
+struct ValueAndSlope {
+  double value = 0.0, slope = 0.0;
+};
+
 /// A formula of named values (`pi` is known) and, where asked for, of the time t [s] and of further values that change
 /// from one evaluation to the next.
 ///
@@ -39,10 +43,10 @@ class Formula {
   TimeDerivatives derivatives(double t) const;
   TimeDerivatives derivatives_from_left(double t) const;
   TimeDerivatives derivatives_from_right(double t) const;
-  /// The derivative by one of the further values.
+  /// Its value with the derivative by one of the further values.
   /// @param other   a number in the order of the constructor
   /// @param others  all of them
-  double slope(std::size_t other, double t, std::span<const double> others) const;
+  ValueAndSlope with_slope(std::size_t other, double t, std::span<const double> others) const;
 
   bool uses_time() const;
   /// @param other  a number in the order of the constructor

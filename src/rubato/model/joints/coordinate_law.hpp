@@ -148,7 +148,7 @@ class Drive final : public CoordinateLaw<Coordinate> {
     constexpr double relative = 6e-6;
     const std::array<double, 2> at{s, rate};
     const auto slope = [&](std::size_t i) {
-      const double exact = formula_.slope(i, t, at);
+      const double exact = formula_.with_slope(i, t, at).slope;
       if (std::isfinite(exact)) return exact;
       const double step = relative * (1.0 + std::abs(at[i]));
       const double ds = i == 0 ? step : 0.0, dr = i == 1 ? step : 0.0;

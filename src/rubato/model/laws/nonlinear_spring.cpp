@@ -27,7 +27,8 @@ class NonlinearSpring final : public Law {
   LawAnswer at(const LawPoint& point, const double*) const override {
     const double t = time_of(point);
     const std::array<double, 2> values{point.u, point.rate};
-    return {force_(t, values), slope(0, t, values), uses_rate_ ? slope(1, t, values) : 0.0};
+    const numerics::ValueAndSlope by_u = with_slope(0, t, values);
+    return {by_u.value, by_u.slope, uses_rate_ ? with_slope(1, t, values).slope : 0.0};
   }
 
   double stored_energy(double u, const double*) const override { return depends_on_time() ? 0.0 : integral(0.0, u); }
@@ -63,15 +64,15 @@ class NonlinearSpring final : public Law {
   }
 
   /// Exact, but where the formula has no finite slope (u sqrt(abs(u)) at zero, whose terms are 0 times infinity).
-  double slope(std::size_t i, double t, const std::array<double, 2>& at) const {
-    const double exact = force_.slope(i, t, at);
-    if (std::isfinite(exact)) return exact;
+  numerics::ValueAndSlope with_slope(std::size_t i, double t, const std::array<double, 2>& at) const {
+    const numerics::ValueAndSlope exact = force_.with_slope(i, t, at);
+    if (std::isfinite(exact.slope)) return exact;
     constexpr double relative = 6e-6;  // the cube root of round-off
     const double step = relative * (1.0 + std::abs(at[i]));
     std::array<double, 2> before = at, after = at;
     before[i] -= step;
     after[i] += step;
-    return (force_(t, after) - force_(t, before)) / (2.0 * step);
+    return {exact.value, (force_(t, after) - force_(t, before)) / (2.0 * step)};
   }
 
   /// The force at rest over u, by halves until they agree: formulas may have kinks.
