@@ -61,7 +61,6 @@ class PowerFlow {
   /// The length from `from` to `to`, the integral of dy / (1 - sign y^n).
   double time_between(double from, double to, double sign) const {
     if (from > to) return -time_between(to, from, sign);
-    constexpr double first = 0.3;  // up to which a series is better: y^n is not smooth at zero
     double time = 0.0;
     if (from < first) {
       const double end = std::min(to, first);
@@ -83,8 +82,10 @@ class PowerFlow {
   }
 
   /// Sum of sign^k y^(kn+1) / (kn+1).
-  double series(double y, double sign) const {
-    const double factor = sign * std::pow(y, n_);
+  double series(double y, double sign) const { return series(y, sign, power(y)); }
+  /// @param power_of_y  y^n
+  double series(double y, double sign, double power_of_y) const {
+    const double factor = sign * power_of_y;
     double sum = 0.0, power = y;
     for (int k = 0; k < 60; ++k) {
       const double term = power / (k * n_ + 1.0);
@@ -118,13 +119,49 @@ class PowerFlow {
     return false;
   }
 
-  /// The y at which the length from y0 is x, of either sign: Newton's method on time_between(), within bounds.
+  /// Where y stays small: Newton's method on that series, whose slope is 1/(1 - sign y^n).
+  bool by_series(double y0, double x, double sign, double& y) const {
+    if (y0 > first || y0 + x > first) return false;
+    double power_of_y = power(y0);
+    const double wanted = series(y0, sign, power_of_y) + x;
+    y = y0 + x * (1.0 - sign * power_of_y);
+    for (int i = 0; i < 8; ++i) {
+      if (!(y >= 0.0 && y <= first)) return false;
+      power_of_y = power(y);
+      const double step = (wanted - series(y, sign, power_of_y)) * (1.0 - sign * power_of_y);
+      y += step;
+      // What is left is of the order of y^(n-1) step^2.
+      if (step * step <= 0.01 * std::numeric_limits<double>::epsilon() * y * y) return y >= 0.0;
+    }
+    return false;
+  }
+
+  /// The y at which the length from y0 is x, of either sign: by its series, where that ends at once, or in parts.
   double at_time(double y0, double x, double sign) const {
     constexpr double endless = 40.0;  // within which y comes as near to 1 as round-off tells
-    if (x == 0.0) return y0;
+    constexpr double long_part = 0.2, short_part = 0.1, shortest_part = 0.03;  // of y
+    constexpr int most_parts = 50;
     if (x > endless) return 1.0;
-    double near = 0.0;
-    if (by_taylor(y0, x, sign, near)) return near;
+    double y = y0, left = x, end = 0.0;
+    for (int i = 0; i < most_parts && left != 0.0; ++i) {
+      if (std::abs(left) < shortest_part * y && by_taylor(y, left, sign, end)) return end;
+      if (by_series(y, left, sign, end)) return end;
+      if (std::abs(left) < long_part * y && by_taylor(y, left, sign, end)) return end;
+      double part = left > 0.0 ? short_part * y : -short_part * y;
+      if (y < first && left > 0.0) {
+        part = series(first, sign) - series(y, sign);
+        end = first;
+      } else if (!by_taylor(y, part, sign, end)) {
+        break;
+      }
+      y = end;
+      left -= part;
+    }
+    return left == 0.0 ? y : by_quadrature(y, left, sign);
+  }
+
+  /// The same by Newton's method on time_between(), within bounds.
+  double by_quadrature(double y0, double x, double sign) const {
     double low = x > 0.0 ? y0 : 0.0, high = x > 0.0 ? 1.0 : y0, y = y0, time = 0.0;  // the length from y0 to y
     for (int i = 0; i < 100; ++i) {
       double next = y + (x - time) * rate(y, sign);
@@ -138,6 +175,7 @@ class PowerFlow {
     return y;
   }
 
+  static constexpr double first = 0.3;  // up to which a series is better: y^n is not smooth at zero
   double n_;
 };
 
