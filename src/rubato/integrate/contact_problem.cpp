@@ -49,8 +49,24 @@ void ContactProblem::reset(const Matrix& compliance, const Matrix& velocity_comp
 }
 
 void ContactProblem::set_slopes(Index contact, double k, double c) {
-  scaled_compliance_.row(contact) = k * compliance_.row(contact) + c * velocity_compliance_.row(contact);
+  for (Index j = 0; j < m_; ++j)
+    scaled_compliance_(contact, j) = k * compliance_(contact, j) + c * velocity_compliance_(contact, j);
   factored_set_[0] = 3;  // no such state: forces a factorisation
+}
+
+// Rows that always have their equation: f + Q f = trial.
+bool ContactProblem::solve_laws(const double* trial, double* force) {
+  const auto& q = scaled_compliance_;
+  if (m_ == 1) {
+    force[0] = trial[0] / (1.0 + q(0, 0));
+  } else if (m_ == 2) {
+    const double a = 1.0 + q(0, 0), b = q(0, 1), c = q(1, 0), d = 1.0 + q(1, 1), determinant = a * d - b * c;
+    force[0] = (d * trial[0] - b * trial[1]) / determinant;
+    force[1] = (a * trial[1] - c * trial[0]) / determinant;
+  } else {
+    force_of_the_set(trial, force, nullptr);
+  }
+  return true;
 }
 
 // Each slider in one of three states: at most nine sets, visited by the same iteration as many sliders.

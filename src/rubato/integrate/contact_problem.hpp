@@ -53,6 +53,7 @@ class ContactProblem {
   Index worst() const { return worst_; }
 
  private:
+  bool solve_laws(const double* trial, double* force);
   bool solve_two(const double* trial, const double* previous, double* force);
   bool solve_stop(const double* trial, double* force, const double* penetration) const;
   bool solve_many(const double* trial, const double* previous, double* force, const double* penetration);
@@ -80,6 +81,7 @@ class ContactProblem {
 inline bool ContactProblem::solve(const double* trial, const double* previous, double* force,
                                   const double* penetration) {
   if (m_ == 0) return true;
+  if (boxes_ == 0) return solve_laws(trial, force);
   if (m_ > boxes_) return solve_many(trial, previous, force, penetration);
   if (m_ > sliders_)
     return m_ == 1 ? solve_stop(trial, force, penetration) : solve_many(trial, previous, force, penetration);

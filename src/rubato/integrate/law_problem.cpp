@@ -68,7 +68,14 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
       start_(static_cast<std::size_t>(system.law_count())),
       end_(start_),
       answer_(start_.size()),
-      reach_(start_.size()) {}
+      reach_(start_.size()),
+      joined_start_{0} {
+  for (Index i = boxes_; i < m_; ++i) {
+    const std::vector<model::Share> joined = system.column(i);
+    joined_.insert(joined_.end(), joined.begin(), joined.end());
+    joined_start_.push_back(joined_.size());
+  }
+}
 
 void LawProblem::reset(const Matrix& compliance, const Matrix& velocity_compliance) {
   compliance_ = compliance;
@@ -117,8 +124,12 @@ bool LawProblem::solve_boxes(const system::State& from, Vector& force) {
 double LawProblem::evaluate(const Vector& force, system::State& to) {
   u_ = u_free_;
   v_ = v_free_;
-  u_.noalias() -= compliance_ * force;
-  v_.noalias() -= velocity_compliance_ * force;
+  // Written out: calls of a product cost more than the product where there are a few laws.
+  for (Index j = 0; j < m_; ++j)
+    for (Index i = boxes_; i < m_; ++i) {
+      u_[i] -= compliance_(i, j) * force[j];
+      v_[i] -= velocity_compliance_(i, j) * force[j];
+    }
   double largest = 0.0;
   for (std::size_t j = 0; j < answer_.size(); ++j) {
     const Index i = boxes_ + static_cast<Index>(j), place = system_.memory_of(static_cast<Index>(j));
@@ -155,16 +166,17 @@ void LawProblem::start(const system::State& from, const system::State& to) {
   set_box_trials(from);
   memory_ = from.memory.data();
   for (std::size_t j = 0; j < start_.size(); ++j) {
-    const Index law = static_cast<Index>(j), i = boxes_ + law;
-    start_[j] = system_.law_point(law, from, model::Side::right);
+    const Index i = boxes_ + static_cast<Index>(j);
+    start_[j] = {0.0, 0.0, from.t, model::Side::right};
+    for (std::size_t s = joined_start_[j]; s < joined_start_[j + 1]; ++s) {
+      start_[j].u += joined_[s].weight * from.q[joined_[s].coordinate];
+      start_[j].rate += joined_[s].weight * from.v[joined_[s].coordinate];
+    }
     end_[j].t = to.t;
     end_[j].side = model::Side::left;
     reach_[j] = std::max(std::abs(start_[j].u), std::abs(u_free_[i]));
-    for (const Index end : {system_.contacts()[static_cast<std::size_t>(i)].first,
-                            system_.contacts()[static_cast<std::size_t>(i)].second})
-      if (end != ground) reach_[j] = std::max(reach_[j], std::abs(from.q[end]));
-    for (const auto& share : system_.shares())
-      if (share.contact == i) reach_[j] = std::max(reach_[j], std::abs(share.weight * from.q[share.coordinate]));
+    for (std::size_t s = joined_start_[j]; s < joined_start_[j + 1]; ++s)
+      reach_[j] = std::max(reach_[j], std::abs(joined_[s].weight * from.q[joined_[s].coordinate]));
   }
   force_ = from.slider_force;
 }

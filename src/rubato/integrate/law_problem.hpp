@@ -51,6 +51,8 @@ class LawProblem {
   std::vector<model::LawPoint> start_, end_;   // of each law
   std::vector<model::LawAnswer> answer_;       // of each law, at end_
   std::vector<double> reach_;                  // the largest displacement behind u of each law: its round-off
+  std::vector<model::Share> joined_;           // what laws join, those of law j from joined_start_[j]
+  std::vector<std::size_t> joined_start_;
   Index worst_ = -1;
 };
 
