@@ -38,6 +38,14 @@ class JenkinsLaw final : public model::Law {
   }
   double largest_stiffness() const override { return stiffness_; }
   bool is_odd() const override { return true; }
+  bool is_exact_between_guards() const override { return true; }
+  double guard(const model::LawPoint& from, const double* memory, const model::LawPoint& to,
+               double near) const override {
+    const double force = stiffness_ * (from.u - memory[0]), side = force > 0.0 ? 1.0 : -1.0;
+    const bool is_at_limit = limit_ - std::abs(force) <= 1e-14 * limit_ + near * stiffness_ * std::abs(from.rate);
+    if (is_at_limit && side * from.rate > 0.0) return side * to.rate;
+    return limit_ - std::abs(force + stiffness_ * (to.u - from.u));
+  }
 
  private:
   double stiffness_, limit_;

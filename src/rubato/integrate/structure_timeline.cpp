@@ -36,10 +36,14 @@ double root(const Function& function) {
 
 constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon();
 
-/// The largest of the displacements that make a relative one: what its round-off follows.
-double size_of(const system::LocallyNonlinear::Ends& ends, const Vector& q) {
-  return (ends.first == ground ? 0.0 : std::abs(q[ends.first])) +
-         (ends.second == ground ? 0.0 : std::abs(q[ends.second]));
+/// The displacements that make a relative one: what its round-off follows.
+double size_of(const system::LocallyNonlinear& system, Index contact, const Vector& q) {
+  const auto& ends = system.contacts()[static_cast<std::size_t>(contact)];
+  double size =
+      (ends.first == ground ? 0.0 : std::abs(q[ends.first])) + (ends.second == ground ? 0.0 : std::abs(q[ends.second]));
+  for (const auto& share : system.shares())
+    if (share.contact == contact) size += std::abs(share.weight * q[share.coordinate]);
+  return size;
 }
 
 }  // namespace
@@ -126,6 +130,7 @@ StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::
 }
 
 StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system::State& from) const {
+  if (contact >= system_.first_law()) return watches_sliders_ ? Watch::law : Watch::nothing;
   if (contact >= system_.slider_count()) return watch_of_stop(contact, from);
   return watches_sliders_ ? watch_of_slider(contact, from) : Watch::nothing;
 }
@@ -144,8 +149,7 @@ StructureTimeline::Watch StructureTimeline::watch_of_slider(Index i, const syste
   const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
   if (slider.limit == 0.0) return Watch::nothing;
   const double force = from.slider_force[i], velocity = system_.relative_displacement(i, from.v);
-  const double least =
-      round_off * (slider.limit + slider.stiffness * size_of(system_.contacts()[static_cast<std::size_t>(i)], from.q));
+  const double least = round_off * (slider.limit + slider.stiffness * size_of(system_, i, from.q));
   if (slider.limit - std::abs(force) > std::max(least, 2.0 * resolution_ * slider.stiffness * std::abs(velocity)))
     return Watch::limit;
   const double side = force > 0.0 ? 1.0 : -1.0;
@@ -160,7 +164,7 @@ StructureTimeline::Watch StructureTimeline::watch_of_stop(Index i, const system:
   const auto& stop = stop_of(i);
   const double depth = system_.relative_displacement(i, from.q) - stop.gap;
   const double velocity = system_.relative_displacement(i, from.v);
-  const double size = size_of(system_.contacts()[static_cast<std::size_t>(i)], from.q) + std::abs(stop.gap);
+  const double size = size_of(system_, i, from.q) + std::abs(stop.gap);
   if (std::abs(depth) <= std::max(round_off * size, 2.0 * resolution_ * std::abs(velocity)))
     return velocity > 0.0 ? Watch::opening : Watch::closing;
   if (depth < 0.0) return Watch::closing;
@@ -181,7 +185,7 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
       return {-path.v1, -path.final_acceleration()};
     case Watch::closing: {
       const auto& stop = stop_of(guard);
-      const double size = size_of(system_.contacts()[static_cast<std::size_t>(guard)], to.q) + std::abs(stop.gap);
+      const double size = size_of(system_, guard, to.q) + std::abs(stop.gap);
       // Held at the gap by the force of the step itself: how long ago it closed only the bracket tells.
       if (stop.damping > 0.0 && to.slider_force[guard] > 0.0 && path.u1 - stop.gap <= round_off * size)
         return {-1.0, 0.0};
@@ -195,10 +199,29 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
       return {sign * (stop.stiffness * (path.u1 - stop.gap) + stop.damping * path.v1),
               sign * (stop.stiffness * path.v1 + stop.damping * path.final_acceleration())};
     }
+    case Watch::law: {
+      constexpr double least = 1e-4;  // of the step, for the slope of the guard at its end
+      const double end = guard_of_law(guard, from, path, 1.0);
+      return {end, (end - guard_of_law(guard, from, path, 1.0 - least)) / (least * path.h)};
+    }
     case Watch::nothing:
       break;
   }
   return {1.0, 0.0};
+}
+
+double StructureTimeline::guard_of_law(Index contact, const system::State& from, const Path& path, double share) const {
+  // A travel of round-off turns at random.
+  const double size = size_of(system_, contact, from.q);
+  if (std::abs(path.u1 - path.u0) + path.h * std::abs(path.v1) <= round_off * size) return 1.0;
+  const Index law = contact - system_.first_law();
+  model::LawPoint start{path.u0, path.v0, from.t, model::Side::right};
+  const double acceleration = system_.relative_displacement(contact, from.auxiliary_acceleration);
+  if (std::abs(start.rate) <= 2.0 * resolution_ * std::abs(acceleration))
+    start.rate = std::copysign(std::numeric_limits<double>::min(), acceleration);
+  const model::LawPoint end{path.displacement(share), path.velocity(share), from.t + share * path.h, model::Side::left};
+  return system_.laws()[static_cast<std::size_t>(law)].law->guard(start, from.memory.data() + system_.memory_of(law),
+                                                                  end, 2.0 * resolution_);
 }
 
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {
@@ -243,6 +266,8 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
         return sign * (stop.stiffness * (path.displacement(s) - stop.gap) + stop.damping * path.velocity(s));
       });
     }
+    case Watch::law:
+      return root([&](double s) { return guard_of_law(contact, from, path, s); });
     case Watch::nothing:
       break;
   }
@@ -252,7 +277,7 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
 Crossing StructureTimeline::first_crossing(const system::State& from, const system::State& to, double least, Look) {
   Crossing first;
   first.share = HUGE_VAL;
-  for (Index i = 0; i < system_.first_law(); ++i) {
+  for (Index i = 0; i < system_.contact_count(); ++i) {
     if (!(guard(i, from, to).value < 0.0)) continue;
     const double share = share_of(i, from, to);
     if (share >= least && share < first.share) first = {i, share};

@@ -12,12 +12,13 @@ namespace rubato::integrate {
 ///   open stop         gap - u                        the gap closes
 ///   pushing stop      k (u - gap) + c du/dt          the force vanishes
 ///   lagging stop      the negative of that           a damped stop that has let go pushes again before it is open
+///   other law         Law::guard()                   it goes on by another formula
 ///
 /// A slider at its limit slips if it moves outward, or if it is at rest and is accelerated outward.
 class StructureTimeline final : public Timeline {
  public:
   /// @param resolution  [s]: at rest is who would be so within this time
-  /// @param watches_sliders  else stops alone
+  /// @param watches_sliders  and other laws; else stops alone
   StructureTimeline(const system::LocallyNonlinear& system, double resolution, bool watches_sliders = true);
 
   std::vector<double> breakpoints(double from, double to) const override;
@@ -36,7 +37,7 @@ class StructureTimeline final : public Timeline {
   int branch_after(Index contact, const system::State& before, const system::State& after);
 
  private:
-  enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again };
+  enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again, law };
   struct Path;
 
   Path path_of(Index contact, const system::State& from, const system::State& to) const;
@@ -45,6 +46,7 @@ class StructureTimeline final : public Timeline {
   Watch watch_of_stop(Index contact, const system::State& from) const;
   double share_of(Index contact, const system::State& from, const system::State& to) const;
   const model::Stop& stop_of(Index contact) const;
+  double guard_of_law(Index contact, const system::State& from, const Path& path, double share) const;
   bool has_ended_at(Index contact, const system::State& from, const system::State& to);
 
   const system::LocallyNonlinear& system_;

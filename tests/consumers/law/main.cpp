@@ -32,6 +32,10 @@ class Dahl final : public model::Law {
     const double work = limit * travel - limit / stiffness_ * (next[0] - memory[0]);
     return work - stored_energy(0.0, next) + stored_energy(0.0, memory);
   }
+  bool is_exact_between_guards() const override { return true; }
+  double guard(const model::LawPoint& from, const double*, const model::LawPoint& to, double) const override {
+    return std::copysign(1.0, from.rate) * to.rate;  // the motion turns
+  }
 
  private:
   double stiffness_, force_;

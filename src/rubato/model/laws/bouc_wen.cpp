@@ -248,6 +248,16 @@ class BoucWen final : public Law, public LawSlopes {
   }
   bool is_odd() const override { return true; }
 
+  /// Another formula holds once the motion turns, or z passes zero.
+  bool is_exact_between_guards() const override { return true; }
+  double guard(const LawPoint& from, const double* memory, const LawPoint& to, double near) const override {
+    const double z = memory[0], before_turn = from.rate > 0.0 ? to.rate : from.rate < 0.0 ? -to.rate : 1.0;
+    if (std::abs(z) <= near * a_ * std::abs(from.rate)) return before_turn;
+    double slope = 0.0;
+    const double then = moved(z, to.u - from.u, to.rate, slope);
+    return std::min(before_turn, z > 0.0 ? then : -then);
+  }
+
  private:
   /// dz/du where the motion goes in a direction.
   double rate(double z, double direction) const {

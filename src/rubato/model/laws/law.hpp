@@ -56,6 +56,23 @@ class Law {
   /// No slope by u is larger: what the step of explicit methods follows [N/m]. Infinite where it is not known.
   virtual double largest_stiffness() const { return std::numeric_limits<double>::infinity(); }
 
+  /// Whether advance() is exact however long a step is, and however u moves within it, as long as guard() does not
+  /// vanish: what Runge-Kutta pairs need to choose their steps, since neither of their two solutions sees an error of
+  /// the memory.
+  virtual bool is_exact_between_guards() const { return memory_size() == 0; }
+  /// What is positive where a step goes on as it began, zero where it first does not (the motion turns, a slip begins
+  /// or ends), and negative beyond. Steps that end at transitions end there; 1: nothing ever changes.
+  /// @param from    the start of the step. Where it rests its rate has the sign with which it goes on.
+  /// @param memory  at `from`
+  /// @param near    what would be reached within this time has been [s]
+  virtual double guard(const LawPoint& from, const double* memory, const LawPoint& to, double near) const {
+    (void)from;
+    (void)memory;
+    (void)to;
+    (void)near;
+    return 1.0;
+  }
+
   virtual bool depends_on_rate() const { return false; }
   virtual bool depends_on_time() const { return false; }
   /// The formula by which it does: what swings in it bounds automatic steps. Null where there is none; of a law that
