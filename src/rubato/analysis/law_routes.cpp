@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace rubato::analysis {
 namespace {
+
+using integrate::NonlinearPart;
 
 struct RouteInfo {
   const char* name;
@@ -96,20 +100,20 @@ constexpr Row lock{
 // In the order of Element.
 constexpr std::array<Row, element_count> table{slider, stop, law, joint_friction, lock};
 
-/// The first element of a structure that a route refuses, as messages call it.
-struct Refused {
-  Element element;
-  std::string name;
-};
-std::optional<Refused> refused_by(Route route, const system::LocallyNonlinear& system) {
-  const auto is_refused = [&](Element element) { return *handling(element, route).how == '\0'; };
-  if (system.slider_count() > 0 && is_refused(Element::slider))
-    return Refused{Element::slider, fmt::format("{} slider(s)", system.slider_count())};
-  if (system.stop_count() > 0 && is_refused(Element::stop))
-    return Refused{Element::stop, fmt::format("the stop \"{}\"", system.stops().front().name)};
-  if (system.law_count() > 0 && is_refused(Element::law))
-    return Refused{Element::law, fmt::format("the {} \"{}\"", system.laws().front().kind, system.laws().front().name)};
-  return std::nullopt;
+/// As messages call it.
+std::string label_of(const NonlinearPart& part, const std::vector<NonlinearPart>& all) {
+  const auto is_alike = [&](const NonlinearPart& other) { return other.family == part.family; };
+  switch (part.family) {
+    case Element::slider:
+      return fmt::format("{} slider(s)", std::count_if(all.begin(), all.end(), is_alike));
+    case Element::stop:
+    case Element::law:
+      return fmt::format("the {} \"{}\"", part.kind, part.name);
+    case Element::joint_friction:
+    case Element::lock:
+      break;
+  }
+  return fmt::format("the {} of the joint \"{}\"", part.kind, part.name);
 }
 
 }  // namespace
@@ -121,23 +125,25 @@ const Handling& handling(Element element, Route route) {
 const char* name_of(Route route) { return routes[static_cast<std::size_t>(route)].name; }
 const char* title_of(Route route) { return routes[static_cast<std::size_t>(route)].title; }
 
-std::optional<std::string> refusal(Route route, const system::LocallyNonlinear& system) {
-  const auto refused = refused_by(route, system);
-  if (!refused) return std::nullopt;
+std::optional<std::string> refusal(Route route, const integrate::SystemKind& kind) {
+  const std::vector<NonlinearPart> parts = kind.nonlinear_parts();
+  const auto refused = std::find_if(
+      parts.begin(), parts.end(), [&](const NonlinearPart& part) { return *handling(part.family, route).how == '\0'; });
+  if (refused == parts.end()) return std::nullopt;
+  const std::string label = label_of(*refused, parts);
   if (route == Route::method_study)
-    return fmt::format("{} needs a linear model with a closed-form response, this one has {}", title_of(route),
-                       refused->name);
-  return fmt::format("{} knows sliders, and the model has {}; {}", title_of(route), refused->name,
-                     handling(refused->element, route).instead);
+    return fmt::format("{} needs a linear model with a closed-form response, this one has {}", title_of(route), label);
+  return fmt::format("{} knows sliders, and the model has {}; {}", title_of(route), label,
+                     handling(refused->family, route).instead);
 }
 
-std::optional<std::string> refusal_of_time(const system::LocallyNonlinear& system) {
-  for (const model::LawBetween& law : system.laws())
-    if (law.law->depends_on_time())
+std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind) {
+  for (const NonlinearPart& part : kind.nonlinear_parts())
+    if (part.depends_on_time)
       return fmt::format(
           "the {} \"{}\" depends on t, and a steady response repeats with the loads; write it without t, or run a "
           "transient",
-          law.kind, law.name);
+          part.kind, part.name);
   return std::nullopt;
 }
 

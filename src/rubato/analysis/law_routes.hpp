@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/system/locally_nonlinear.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 
 #include <optional>
 #include <span>
@@ -24,13 +24,7 @@ enum class Route {
 inline constexpr int route_count = 9;
 
 /// What a model may have that is not linear.
-enum class Element {
-  slider,
-  stop,
-  law,  ///< of any kind in model/laws, between coordinates
-  joint_friction,
-  lock
-};
+using Element = integrate::NonlinearPart::Family;
 inline constexpr int element_count = 5;
 
 /// What a route does with an element.
@@ -45,10 +39,10 @@ const char* name_of(Route route);
 /// For messages: "the solver harmonic_balance".
 const char* title_of(Route route);
 
-/// Why a route cannot take a structure, and what can; nothing where it can.
-std::optional<std::string> refusal(Route route, const system::LocallyNonlinear& system);
+/// Why a route cannot take the parts of a model, and what can; nothing where it can.
+std::optional<std::string> refusal(Route route, const integrate::SystemKind& kind);
 
-/// Why no steady response follows from the laws of a structure: one depends on time. Nothing where none does.
-std::optional<std::string> refusal_of_time(const system::LocallyNonlinear& system);
+/// Why no steady response follows from the laws of a model: one depends on time. Nothing where none does.
+std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind);
 
 }  // namespace rubato::analysis

@@ -9,25 +9,8 @@
 
 namespace rubato::analysis {
 
-template <class Laws>
-void LoadSwings::take_laws(const Laws& laws) {
-  for (const auto& law : laws)
-    if (const numerics::Formula* formula = law.law->formula_of_time()) take(*formula, 0);
-}
-
-LoadSwings::LoadSwings(const system::LocallyNonlinear& system, double duration) : duration_(duration) {
-  for (const auto& term : system.loads().terms()) take(term.law);
-  take_laws(system.laws());
-}
-
-LoadSwings::LoadSwings(const model::Mechanism& mechanism, double duration) : duration_(duration) {
-  for (const auto& force : mechanism.forces) take(force.law);
-  for (const auto& law : mechanism.following_laws) take(law);
-  for (const auto& formula : mechanism.joint_formulas) take(formula, 0);
-  take_laws(mechanism.laws);
-  for (const auto& drive : mechanism.drives)
-    if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))
-      for (const int order : {0, 2}) take(*formula, order);  // forces follow the acceleration
+LoadSwings::LoadSwings(const integrate::SystemKind& kind, double duration) : duration_(duration) {
+  kind.for_each_time_law([this](const model::TimeLaw& law) { take(law); });
 }
 
 void LoadSwings::take(const model::TimeLaw& law) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <rubato/integrate/adaptive_march.hpp>
-#include <rubato/model/mechanism.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/model/time_law.hpp>
 #include <rubato/numerics/formula_swings.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
 
 #include <string>
 #include <utility>
@@ -15,8 +15,7 @@ namespace rubato::analysis {
 /// harmonic laws. Of tables nothing need be known, since steps end at their rows.
 class LoadSwings {
  public:
-  LoadSwings(const system::LocallyNonlinear& system, double duration);
-  LoadSwings(const model::Mechanism& mechanism, double duration);
+  LoadSwings(const integrate::SystemKind& kind, double duration);
 
   /// What harmonic laws allow: a sixth of the shortest period [s]; HUGE_VAL where there are none.
   double harmonic_limit() const;
@@ -37,8 +36,6 @@ class LoadSwings {
     numerics::Swings swings;
   };
   void take(const model::TimeLaw& law);
-  template <class Laws>
-  void take_laws(const Laws& laws);
   void take(const numerics::Formula& formula, int order);
 
   double duration_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/transient_kind.hpp>
+#include <rubato/integrate/kinds/mechanism_kind.hpp>
 #include <rubato/system/mechanism.hpp>
 
 namespace rubato::analysis {
@@ -17,7 +18,7 @@ class MechanismTransient final : public TransientKind {
   void check(const TransientRequest& request, const TransientPlan& plan) const override;
   /// Assembles the mechanism, and names the joints and by how much they are apart where that fails.
   void find_start(const TransientRequest& request, TransientPlan& plan) const override;
-  LoadSwings swings(double duration) const override { return {mechanism_.model(), duration}; }
+  LoadSwings swings(double duration) const override { return {integrate::MechanismKind(mechanism_), duration}; }
   void take_equal_steps(const TransientRequest& request, TransientPlan& plan) const override;
   void plan_events(const std::string& title, const model::StepDescription& description, const TransientPlan& plan,
                    integrate::StepPlan& step) const override;

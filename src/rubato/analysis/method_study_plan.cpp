@@ -3,6 +3,7 @@
 #include <rubato/analysis/method_study_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/integrate/stability.hpp>
 
 #include <fmt/format.h>
@@ -85,7 +86,8 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
                                   const model::MethodStudyDescription& study, const system::LocallyNonlinear& system,
                                   const numerics::Parameters& parameters) {
   const std::string title = "analysis \"" + name + "\": ";
-  if (const auto reason = refusal(Route::method_study, system)) throw InvalidInput(where, title + *reason);
+  if (const auto reason = refusal(Route::method_study, integrate::StructureKind(system)))
+    throw InvalidInput(where, title + *reason);
   if (!system.loads().are_harmonic())
     throw InvalidInput(where, title + "a method study needs harmonic loads, whose response has a closed form");
   try {

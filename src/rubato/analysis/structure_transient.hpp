@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/transient_kind.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 namespace rubato::analysis {
@@ -15,7 +16,7 @@ class StructureTransient final : public TransientKind {
   double reference() const override { return system_.reference(); }
   void check(const TransientRequest& request, const TransientPlan& plan) const override;
   void find_start(const TransientRequest& request, TransientPlan& plan) const override;
-  LoadSwings swings(double duration) const override { return {system_, duration}; }
+  LoadSwings swings(double duration) const override { return {integrate::StructureKind(system_), duration}; }
   /// Refuses a step beyond the stability limit of the model.
   void take_equal_steps(const TransientRequest& request, TransientPlan& plan) const override;
   void plan_events(const std::string& title, const model::StepDescription& description, const TransientPlan& plan,

@@ -135,7 +135,7 @@ range = [0.1, 0.2]
 angular_frequency = { from = 0.5, to = 1.5 }
 )"));
   EXPECT_EQ(
-      refusal(Route::damper_curve, prepared.system),
+      refusal(Route::damper_curve, *prepared.kind),
       "a damper curve knows sliders, and the model has the bouc_wen \"foot\"; take a frequency_response with solver "
       "= \"harmonic_balance\" and a sweep");
 }

@@ -76,7 +76,7 @@ void plan_frequencies(DamperCurvePlan& plan, const Description& description, con
 
 void plan_objective(DamperCurvePlan& plan, const Description& description, const StudyInput& input,
                     const std::string& title, const Location& where) {
-  if (const auto reason = refusal(Route::damper_curve, input.structure())) throw InvalidInput(where, title + *reason);
+  if (const auto reason = refusal(Route::damper_curve, input.kind)) throw InvalidInput(where, title + *reason);
   plan.objective = description.objective;
   if (plan.objective == Description::Objective::dissipated && input.structure().slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),

@@ -106,9 +106,9 @@ Description with_route(Description description, const StudyInput& input) {
 void plan_route(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                 const std::string& title, const Location& where) {
   const Route route = route_of(description.route);
-  const auto reason = refusal(route, input.structure());
+  const auto reason = refusal(route, input.kind);
   if (reason) throw InvalidInput(place(description.route_where, where), title + *reason);
-  if (const auto of_time = refusal_of_time(input.structure())) throw InvalidInput(where, title + *of_time);
+  if (const auto of_time = refusal_of_time(input.kind)) throw InvalidInput(where, title + *of_time);
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");

@@ -34,6 +34,31 @@ std::string MechanismKind::summary() const {
                      counted(static_cast<Index>(model.locks.size()), "lock"));
 }
 
+std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
+  const model::Mechanism& model = mechanism_.model();
+  std::vector<NonlinearPart> parts;
+  for (const auto& law : model.laws)
+    parts.push_back({NonlinearPart::Family::law, law.kind, law.name, law.law->depends_on_time()});
+  for (const auto& friction : model.frictions)
+    parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
+  for (const auto& lock : model.locks) parts.push_back({NonlinearPart::Family::lock, "lock", lock.name});
+  return parts;
+}
+
+void MechanismKind::for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const {
+  const model::Mechanism& model = mechanism_.model();
+  for (const auto& force : model.forces) show(force.law);
+  for (const auto& law : model.following_laws) show(law);
+  for (const auto& formula : model.joint_formulas) show(model::FormulaLaw{formula});
+  for (const auto& law : model.laws)
+    if (const numerics::Formula* formula = law.law->formula_of_time()) show(model::FormulaLaw{*formula});
+  for (const auto& drive : model.drives) {
+    if (const auto* table = std::get_if<model::TableLaw>(&drive.law)) show(*table);
+    if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))
+      for (const int order : {0, 2}) show(model::FormulaDerivative{*formula, order});
+  }
+}
+
 std::vector<model::Held> MechanismKind::held_displacements(const StaticRequest& request) const {
   const auto& wanted = request.description.displacements;
   if (!wanted) return {};

@@ -22,6 +22,8 @@ class MechanismKind final : public SystemKind {
   /// Rows of locks that are open and of friction count nothing. What is left is what Gruebler and Kutzbach count,
   /// coordinates less rows, corrected by the rank of the start; drives hold what they drive.
   std::string summary() const override;
+  std::vector<NonlinearPart> nonlinear_parts() const override;
+  void for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const override;
 
   std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
   /// Assembles the mechanism; throws where it cannot be.

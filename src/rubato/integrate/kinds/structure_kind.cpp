@@ -47,6 +47,21 @@ std::string StructureKind::summary() const {
                      system_.stop_count() > 0 ? ", " + counted(system_.stop_count(), "stop") : "");
 }
 
+std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
+  std::vector<NonlinearPart> parts;
+  for (const auto& slider : system_.sliders()) parts.push_back({NonlinearPart::Family::slider, "slider", slider.name});
+  for (const auto& stop : system_.stops()) parts.push_back({NonlinearPart::Family::stop, "stop", stop.name});
+  for (const auto& law : system_.laws())
+    parts.push_back({NonlinearPart::Family::law, law.kind, law.name, law.law->depends_on_time()});
+  return parts;
+}
+
+void StructureKind::for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const {
+  for (const auto& term : system_.loads().terms()) show(term.law);
+  for (const auto& law : system_.laws())
+    if (const numerics::Formula* formula = law.law->formula_of_time()) show(model::FormulaLaw{*formula});
+}
+
 std::vector<model::Held> StructureKind::held_displacements(const StaticRequest& request) const {
   const model::StaticDescription& description = request.description;
   if (description.section_forces.is_wanted())

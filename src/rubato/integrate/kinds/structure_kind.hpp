@@ -22,6 +22,8 @@ class StructureKind final : public SystemKind {
   void show(KindVisitor& visitor) const override { visitor.structure(system_); }
   const system::LocallyNonlinear* structure() const override { return &system_; }
   std::string summary() const override;
+  std::vector<NonlinearPart> nonlinear_parts() const override;
+  void for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const override;
   /// Loads hold the workspace of their formulas.
   std::unique_ptr<const SystemKind> for_thread() const override {
     return std::make_unique<StructureKind>(std::make_unique<const system::LocallyNonlinear>(system_));

@@ -3,10 +3,13 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/equilibrium/equilibrium.hpp>
 #include <rubato/integrate/equilibrium/free_motions.hpp>
+#include <rubato/integrate/kinds/nonlinear_part.hpp>
 #include <rubato/model/description.hpp>
+#include <rubato/model/time_law.hpp>
 #include <rubato/system/moving_supports.hpp>
 #include <rubato/system/system.hpp>
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -64,6 +67,13 @@ class SystemKind {
   virtual std::string summary() const = 0;
   /// The same for another thread, where the system has workspaces; null: it is shared.
   virtual std::unique_ptr<const SystemKind> for_thread() const { return nullptr; }
+
+  // What it is made of
+  /// Sliders, then stops, then other laws, then frictions and locks of joints.
+  virtual std::vector<NonlinearPart> nonlinear_parts() const = 0;
+  /// Shows what acts as a function of time: loads, motions that are prescribed (and their accelerations, which loads
+  /// follow), laws that say by which formula they do.
+  virtual void for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const = 0;
 
   // Statics
   /// The displacements that a study holds; refuses keys that do not go with the kind.

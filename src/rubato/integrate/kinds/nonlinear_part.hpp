@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+namespace rubato::integrate {
+
+/// A part of a model that is not linear, by what analyses ask of it.
+struct NonlinearPart {
+  enum class Family {
+    slider,
+    stop,
+    law,  ///< of any kind in model/laws
+    joint_friction,
+    lock
+  };
+  Family family = Family::law;
+  std::string kind;  ///< of a law: its table in the study file
+  std::string name;
+  bool depends_on_time = false;
+};
+
+}  // namespace rubato::integrate
