@@ -258,6 +258,7 @@ TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
     m.locks.push_back(lock);
   }
   const system::Mechanism mechanism(std::move(m));
+  system::MechanismEquations equations(mechanism);
   integrate::MarchReport report;
   report.step.outcome = integrate::StepOutcome::crawls;
   report.failed_at = 2.0;
@@ -265,10 +266,10 @@ TEST(MechanismMessages, NameTheJointsThatChangedLastInARunThatCrawls) {
   const std::vector<integrate::LockEvent> events{
       {0.5, 0, true, 0.0, -1}, {1.0, 1, true, 0.0, -1}, {1.5, 0, false, 0.0, -1}};
   const std::string told =
-      analysis::text_of(integrate::failure_of(report, mechanism, mechanism.start(), {-1, events}), "");
+      analysis::text_of(integrate::failure_of(report, equations, mechanism.start(), {-1, events}), "");
   EXPECT_THAT(told, HasSubstr("crawled: the last 2,000 steps were shorter than 1e-8 of the run; the last to change: "
                               "\"nut\" (lets go at t = 1.5 s), \"bearing\" (locks at t = 1 s);"));
-  EXPECT_THAT(analysis::text_of(integrate::failure_of(report, mechanism, mechanism.start(), {}), ""),
+  EXPECT_THAT(analysis::text_of(integrate::failure_of(report, equations, mechanism.start(), {}), ""),
               Not(HasSubstr("change")));
 }
 

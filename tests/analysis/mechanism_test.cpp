@@ -363,11 +363,12 @@ TEST(MechanismFailures, NameTheSingularConfigurationNextToWhichTheyAre) {
   const system::Mechanism mechanism(window());
   integrate::MarchReport report;
   report.step.outcome = integrate::StepOutcome::too_small;
+  system::MechanismEquations equations(mechanism);
   const auto message_at = [&](double angle) {
     system::State state = mechanism.start();
     const double c = std::cos(angle), s = std::sin(angle);
     state.q.tail<9>() << 0.5 * c, 0.5 * s, angle, 1.0 + 0.5 * c, 0.5 * s, angle, 0.5 + c, s, 0.0;
-    return analysis::text_of(integrate::failure_of(report, mechanism, state, {}), "");
+    return analysis::text_of(integrate::failure_of(report, equations, state, {}), "");
   };
   // In line the four hinges ask twice that the bars keep their distance along it: nine coordinates and eight rows, of
   // which seven say something of their own.

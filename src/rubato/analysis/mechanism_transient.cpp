@@ -147,8 +147,8 @@ class MechanismMarch final : public TransientMarch {
     return integrate::march(*stepper_, *estimator_, plan_.automatic->plan, timeline_, state_, end, observer, log);
   }
 
-  integrate::MarchFailure failure(const integrate::MarchReport& report) const override {
-    return integrate::failure_of(report, mechanism_, state_, {timeline_.chattering(), timeline_.events()});
+  integrate::MarchFailure failure(const integrate::MarchReport& report) override {
+    return integrate::failure_of(report, equations_, state_, {timeline_.chattering(), timeline_.events()});
   }
 
   integrate::Events events() const override {

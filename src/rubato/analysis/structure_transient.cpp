@@ -96,7 +96,7 @@ class StructureMarch final : public TransientMarch {
     return report;
   }
 
-  integrate::MarchFailure failure(const integrate::MarchReport& report) const override {
+  integrate::MarchFailure failure(const integrate::MarchReport& report) override {
     return integrate::failure_of(report, system_);
   }
 

@@ -40,7 +40,7 @@ class TransientMarch {
   /// Goes on to `end` [s]; observer and log may be null.
   virtual integrate::AdaptiveReport go_to(double end, integrate::Observer* observer, integrate::TryLog* log) = 0;
   /// Why it ended before its time.
-  virtual integrate::MarchFailure failure(const integrate::MarchReport& report) const = 0;
+  virtual integrate::MarchFailure failure(const integrate::MarchReport& report) = 0;
   /// What its parts did so far.
   virtual integrate::Events events() const = 0;
   /// Tells what else there is of a march that ended.

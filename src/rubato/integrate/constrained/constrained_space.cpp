@@ -3,24 +3,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rubato::integrate {
 namespace {
 
 class ConstrainedSpace final : public ErrorSpace {
  public:
-  ConstrainedSpace(const system::ConstrainedSystem& of, const system::State& start, double tolerance)
-      : system_(of),
+  /// @param equations  lent   @param own  the same where nobody lends them, else null
+  ConstrainedSpace(system::ConstrainedEquations& equations, std::unique_ptr<system::ConstrainedEquations> own,
+                   const system::State& start, double tolerance)
+      : system_(equations.system()),
         start_(start.q),
-        extent_(integrate::extent(of)),
-        least_(integrate::least_size(of, tolerance)),
+        extent_(integrate::extent(system_)),
+        least_(integrate::least_size(system_, tolerance)),
         round_off_(std::min(1e-12, 1e-5 * tolerance) * extent_),
-        equations_(of.equations()),
-        product_(of.size()),
-        travel_(of.size()),
-        moved_(of.start()),
-        force_(of.size()),
-        constraint_(of.constraint_count()) {}
+        own_(std::move(own)),
+        equations_(equations),
+        product_(system_.size()),
+        travel_(system_.size()),
+        moved_(system_.start()),
+        force_(system_.size()),
+        constraint_(system_.constraint_count()) {}
 
   Index size() const override { return system_.size(); }
   const Vector& times_mass(const Vector& x) override {
@@ -63,13 +67,13 @@ class ConstrainedSpace final : public ErrorSpace {
     constexpr double small = 1e-6;
     const double way = small * extent_ / length;
     double work = 0.0;
-    equations_->begin_step(state);
+    equations_.begin_step(state);
     for (const double sign : {1.0, -1.0}) {
       moved_ = state;
       system_.retract(state.q, (sign * way) * x, moved_.q);
-      equations_->go_to_end(moved_, model::Side::right);
-      equations_->residual(force_, constraint_);
-      equations_->add_constraint_force(state.multiplier, 1.0, force_);
+      equations_.go_to_end(moved_, model::Side::right);
+      equations_.residual(force_, constraint_);
+      equations_.add_constraint_force(state.multiplier, 1.0, force_);
       work += sign * x.dot(force_);
     }
     const double quotient = work / (2.0 * way * length * length);
@@ -79,7 +83,8 @@ class ConstrainedSpace final : public ErrorSpace {
   const system::ConstrainedSystem& system_;
   Vector start_;
   double extent_, least_, round_off_;
-  std::unique_ptr<system::ConstrainedEquations> equations_;
+  std::unique_ptr<system::ConstrainedEquations> own_;
+  system::ConstrainedEquations& equations_;
   Vector product_, travel_;
   system::State moved_;
   Vector force_, constraint_;
@@ -97,7 +102,14 @@ double least_size(const system::ConstrainedSystem& system, double tolerance) {
 
 std::unique_ptr<ErrorSpace> make_error_space(const system::ConstrainedSystem& system, const system::State& start,
                                              double tolerance) {
-  return std::make_unique<ConstrainedSpace>(system, start, tolerance);
+  auto own = system.equations();
+  system::ConstrainedEquations& equations = *own;
+  return std::make_unique<ConstrainedSpace>(equations, std::move(own), start, tolerance);
+}
+
+std::unique_ptr<ErrorSpace> make_error_space(system::ConstrainedEquations& equations, const system::State& start,
+                                             double tolerance) {
+  return std::make_unique<ConstrainedSpace>(equations, nullptr, start, tolerance);
 }
 
 }  // namespace rubato::integrate

@@ -24,4 +24,8 @@ double least_size(const system::ConstrainedSystem& system, double tolerance);
 std::unique_ptr<ErrorSpace> make_error_space(const system::ConstrainedSystem& system, const system::State& start,
                                              double tolerance);
 
+/// The same with equations that are lent; wherever they are left is well.
+std::unique_ptr<ErrorSpace> make_error_space(system::ConstrainedEquations& equations, const system::State& start,
+                                             double tolerance);
+
 }  // namespace rubato::integrate

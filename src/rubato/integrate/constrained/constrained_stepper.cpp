@@ -14,18 +14,19 @@ namespace {
 
 class ConstrainedStepper final : public Stepper {
  public:
-  ConstrainedStepper(const GeneralizedAlpha& method, const system::ConstrainedSystem& of, const NewtonPlan& plan)
+  /// @param equations  lent
+  ConstrainedStepper(const GeneralizedAlpha& method, system::ConstrainedEquations& equations, const NewtonPlan& plan)
       : p_(method),
         plan_(plan),
-        system_(of),
-        workspace_(of.equations()),
-        equations_(*workspace_),
-        travel_(of.size()),
-        force_(of.size()),
-        product_(of.size()),
-        constraint_(of.constraint_count()),
-        has_followed_reactions_(of.has_followed_reactions()),
-        has_slip_(of.has_slip_directions()) {
+        system_(equations.system()),
+        equations_(equations),
+        travel_(system_.size()),
+        force_(system_.size()),
+        product_(system_.size()),
+        constraint_(system_.constraint_count()),
+        has_followed_reactions_(system_.has_followed_reactions()),
+        has_slip_(system_.has_slip_directions()) {
+    const system::ConstrainedSystem& of = system_;
     is_smooth_ = !of.has_kinks() && !has_followed_reactions_ && !has_slip_;
     rules_.most_iterations = plan.most_iterations;
     rules_.keep_below = 0.1;
@@ -39,6 +40,18 @@ class ConstrainedStepper final : public Stepper {
   }
 
   StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    const int before = equations_.matrix().count();
+    const StepReport report = step(from, h, t1, to);
+    factorisations_ += equations_.matrix().count() - before;
+    equations_.set_reaction_lag(from.reaction_lag, 0.0);  // whoever uses them next is in no step
+    return report;
+  }
+
+  double shift() const override { return p_.alpha_m - p_.alpha_f; }
+  int factorisations() const override { return factorisations_; }
+
+ private:
+  StepReport step(const system::State& from, double h, double t1, system::State& to) {
     if (plan_.avoids_singular_ends) count_usual_redundancy(from);
     const double mean = (1.0 - p_.alpha_f) / (1.0 - p_.alpha_m);
     scale_ = mean * p_.beta * h * h;
@@ -73,10 +86,6 @@ class ConstrainedStepper final : public Stepper {
     return is_held ? finish(from, h, iterates.is_placed, to) : fault(StepOutcome::singular);
   }
 
-  double shift() const override { return p_.alpha_m - p_.alpha_f; }
-  int factorisations() const override { return equations_.matrix().count(); }
-
- private:
   /// The equations of the step as Newton's method sees them. The iterate is the travel and, in `to`, the multipliers;
   /// corrections are measured in the mass norm. After it has converged constraint_ holds the last correction of the
   /// scaled multipliers.
@@ -304,8 +313,8 @@ class ConstrainedStepper final : public Stepper {
   GeneralizedAlpha p_;
   NewtonPlan plan_;
   const system::ConstrainedSystem& system_;
-  std::unique_ptr<system::ConstrainedEquations> workspace_;
   system::ConstrainedEquations& equations_;
+  int factorisations_ = 0;
   Vector travel_, force_, product_, constraint_;
   numerics::NewtonRules rules_;
   double tolerance_ = 0.0, scale_ = 0.0;
@@ -314,6 +323,24 @@ class ConstrainedStepper final : public Stepper {
   bool has_slip_;                // directions of friction
   system::State usual_for_;
   int usual_ = -1;  // rows that repeat others; -1: not known yet
+};
+
+/// A stepper with equations of its own.
+class OwningStepper final : public Stepper {
+ public:
+  OwningStepper(const GeneralizedAlpha& method, const system::ConstrainedSystem& of, const NewtonPlan& plan)
+      : equations_(of.equations()), stepper_(method, *equations_, plan) {}
+
+  StepReport attempt(const system::State& from, double h, double t1, system::State& to) override {
+    return stepper_.attempt(from, h, t1, to);
+  }
+  void step_changes(system::State& state, double ratio) override { stepper_.step_changes(state, ratio); }
+  double shift() const override { return stepper_.shift(); }
+  int factorisations() const override { return stepper_.factorisations(); }
+
+ private:
+  std::unique_ptr<system::ConstrainedEquations> equations_;
+  ConstrainedStepper stepper_;
 };
 
 }  // namespace
@@ -332,8 +359,7 @@ double spectral_radius_at_infinity(const GeneralizedAlpha& p, bool projects_velo
   return std::max(forces, kinematics);
 }
 
-std::unique_ptr<Stepper> make_stepper(const Method& method, const system::ConstrainedSystem& system,
-                                      const NewtonPlan& plan, bool force) {
+void check_stepper(const Method& method, const system::ConstrainedSystem& system, const NewtonPlan& plan, bool force) {
   const auto* alpha = std::get_if<GeneralizedAlpha>(&method.formula);
   if (!alpha || !(alpha->beta > 0.0))
     throw InvalidInput(
@@ -351,7 +377,18 @@ std::unique_ptr<Stepper> make_stepper(const Method& method, const system::Constr
                     "{{ name = \"hht\", alpha = -0.05 }} or {{ name = \"generalized_alpha\", rho_inf = 0.9 }}, or set "
                     "{}allow_unstable = true",
                     method.name, radius, may_be_projected ? "project_velocities = true or " : ""));
-  return std::make_unique<ConstrainedStepper>(*alpha, system, plan);
+}
+
+std::unique_ptr<Stepper> make_stepper(const Method& method, const system::ConstrainedSystem& system,
+                                      const NewtonPlan& plan, bool force) {
+  check_stepper(method, system, plan, force);
+  return std::make_unique<OwningStepper>(std::get<GeneralizedAlpha>(method.formula), system, plan);
+}
+
+std::unique_ptr<Stepper> make_stepper(const Method& method, system::ConstrainedEquations& equations,
+                                      const NewtonPlan& plan, bool force) {
+  check_stepper(method, equations.system(), plan, force);
+  return std::make_unique<ConstrainedStepper>(std::get<GeneralizedAlpha>(method.formula), equations, plan);
 }
 
 }  // namespace rubato::integrate

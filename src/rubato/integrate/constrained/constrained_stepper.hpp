@@ -43,6 +43,14 @@ struct NewtonPlan {
 std::unique_ptr<Stepper> make_stepper(const Method& method, const system::ConstrainedSystem& system,
                                       const NewtonPlan& plan = {}, bool force = false);
 
+/// The same with equations that are lent, as a march lends them to all that looks at its states between the steps.
+std::unique_ptr<Stepper> make_stepper(const Method& method, system::ConstrainedEquations& equations,
+                                      const NewtonPlan& plan = {}, bool force = false);
+
+/// Throws what make_stepper() throws, and makes nothing.
+void check_stepper(const Method& method, const system::ConstrainedSystem& system, const NewtonPlan& plan = {},
+                   bool force = false);
+
 /// The largest root of the step's characteristic polynomial for omega h -> infinity.
 /// @param projects_velocities  of a step that removes the velocity that is left of such a motion (a constraint) at its
 ///                             end

@@ -11,9 +11,9 @@ namespace rubato::integrate {
 namespace {
 
 /// The joints that repeat each other in a state, or all but, and do not in the configuration of the start.
-std::vector<std::string> singular_joints(const system::Mechanism& mechanism, const system::State& state) {
+std::vector<std::string> singular_joints(system::MechanismEquations& equations, const system::State& state) {
+  const system::Mechanism& mechanism = equations.mechanism();
   constexpr double left = 1e-6;  // a thousandth of a radian from the configuration itself
-  system::MechanismEquations equations(mechanism);
   Vector force(mechanism.size()), constraint(mechanism.constraint_count());
   const auto rows_in = [&](const system::State& where) {
     equations.go_to(where, model::Side::left);
@@ -36,15 +36,14 @@ std::vector<std::string> singular_joints(const system::Mechanism& mechanism, con
 }
 
 /// What is no number a step ahead, in the motion that the last state has; empty: nothing.
-std::string non_finite_part_ahead(const MarchReport& report, const system::Mechanism& mechanism,
+std::string non_finite_part_ahead(const MarchReport& report, system::MechanismEquations& equations,
                                   const system::State& state) {
-  system::MechanismEquations equations(mechanism);
   system::State ahead = state;
   std::string part;
   for (const double steps : {1.0, 2.0, 10.0}) {  // one may end at the very edge of a law
     const double length = steps * report.failed_step;
     ahead.t = report.failed_at + length;
-    mechanism.retract(state.q, length * state.v, ahead.q);
+    equations.mechanism().retract(state.q, length * state.v, ahead.q);
     equations.go_to(ahead, model::Side::left);
     part = equations.non_finite_part();
     if (!part.empty()) break;
@@ -85,8 +84,9 @@ std::string collapsed_strut(const system::Mechanism& mechanism, const system::St
 
 }  // namespace
 
-MarchFailure failure_of(const MarchReport& report, const system::Mechanism& mechanism, const system::State& state,
+MarchFailure failure_of(const MarchReport& report, system::MechanismEquations& equations, const system::State& state,
                         const Transitions& transitions) {
+  const system::Mechanism& mechanism = equations.mechanism();
   constexpr double least_tolerance = 1e-9;  // see the known issues
   const StepOutcome outcome = report.step.outcome;
   MarchFailure failure;
@@ -110,9 +110,9 @@ MarchFailure failure_of(const MarchReport& report, const system::Mechanism& mech
   failure.has_followed_reactions = has_followed_reactions(mechanism.model());
   const bool is_stuck = outcome == StepOutcome::too_small || outcome == StepOutcome::crawls;
   if (outcome == StepOutcome::not_finite || outcome == StepOutcome::singular || is_stuck)
-    failure.non_finite_part = non_finite_part_ahead(report, mechanism, state);
+    failure.non_finite_part = non_finite_part_ahead(report, equations, state);
   if (outcome == StepOutcome::not_converged || outcome == StepOutcome::singular || is_stuck)
-    failure.repeating_joints = singular_joints(mechanism, state);
+    failure.repeating_joints = singular_joints(equations, state);
   return failure;
 }
 

@@ -16,9 +16,10 @@ struct Transitions {
 
 /// Why a march of a mechanism ended before its time. A singular configuration is named with the joints that repeat
 /// others there.
+/// @param equations    lent; wherever they are left is well
 /// @param state        the last accepted one
 /// @param transitions  of its locks and frictions
-MarchFailure failure_of(const MarchReport& report, const system::Mechanism& mechanism, const system::State& state,
+MarchFailure failure_of(const MarchReport& report, system::MechanismEquations& equations, const system::State& state,
                         const Transitions& transitions);
 
 }  // namespace rubato::integrate

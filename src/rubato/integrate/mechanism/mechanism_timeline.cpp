@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace rubato::integrate {
 namespace {
@@ -21,15 +22,24 @@ system::Loads loads_of(const model::Mechanism& model) {
 
 }  // namespace
 
-MechanismTimeline::MechanismTimeline(const system::Mechanism& mechanism, double resolution)
-    : mechanism_(mechanism),
-      equations_(mechanism),
+MechanismTimeline::MechanismTimeline(const system::Mechanism& of, double resolution)
+    : MechanismTimeline(std::make_unique<system::MechanismEquations>(of), resolution) {}
+
+MechanismTimeline::MechanismTimeline(std::unique_ptr<system::MechanismEquations> own, double resolution)
+    : MechanismTimeline(*own, resolution) {
+  own_ = std::move(own);
+}
+
+MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, double resolution)
+    : equations_(equations),
+      mechanism_(equations.mechanism()),
       resolution_(resolution),
-      loads_(loads_of(mechanism.model())),
-      left_(mechanism.size()),
-      right_(mechanism.size()),
-      padded_(static_cast<std::size_t>(mechanism.size()) + 1, 0.0),
+      loads_(loads_of(mechanism_.model())),
+      left_(mechanism_.size()),
+      right_(mechanism_.size()),
+      padded_(static_cast<std::size_t>(mechanism_.size()) + 1, 0.0),
       padded_acceleration_(padded_) {
+  const system::Mechanism& mechanism = mechanism_;
   equations_.set_duration(1e12 * resolution);
   transitions_.resize(mechanism.model().locks.size() + mechanism.model().frictions.size());
   for (const auto& lock : mechanism.model().locks)

@@ -5,6 +5,7 @@
 #include <rubato/system/mechanism_equations.hpp>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class MechanismTimeline final : public Timeline {
  public:
   /// @param resolution  [s]
   MechanismTimeline(const system::Mechanism& mechanism, double resolution);
+  /// @param equations  lent; wherever they are left is well
+  MechanismTimeline(system::MechanismEquations& equations, double resolution);
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
@@ -108,8 +111,11 @@ class MechanismTimeline final : public Timeline {
   /// Velocities, accelerations and multipliers that the constraints allow from now on, friction left out.
   bool project(system::State& state, double& energy_lost);
 
+  MechanismTimeline(std::unique_ptr<system::MechanismEquations> own, double resolution);
+
+  std::unique_ptr<system::MechanismEquations> own_;  // null: they are lent
+  system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
-  system::MechanismEquations equations_;
   double resolution_;
   system::Loads loads_;
   Vector left_, right_;
