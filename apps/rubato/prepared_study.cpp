@@ -73,6 +73,8 @@ std::unique_ptr<const PreparedStudy> prepare(const StudyOptions& options) {
   try {
     auto prepared = std::make_unique<PreparedStudy>(
         PreparedStudy{study, files, overrides, parameters, analyses, {}, assembled(study, parameters)});
+    prepared->transients = std::make_unique<analysis::StudyTransients>(prepared->description.analyses, *prepared->kind,
+                                                                       prepared->parameters);
     for (const auto& analysis : analyses) {
       task = fmt::format("to check the analysis \"{}\"", analysis.name);
       prepared->planned.push_back(analysis::plan_analysis(analysis, prepared->input()));

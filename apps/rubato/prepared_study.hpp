@@ -3,6 +3,7 @@
 #include "commands.hpp"
 
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/analysis/study_transients.hpp>
 #include <rubato/io/source_files.hpp>
 #include <rubato/model/description.hpp>
 
@@ -19,9 +20,10 @@ struct PreparedStudy {
   std::vector<model::AnalysisDescription> analyses;
   std::vector<analysis::PlannedAnalysis> planned;  ///< each of them
   std::unique_ptr<const integrate::SystemKind> kind;
+  std::unique_ptr<analysis::StudyTransients> transients = nullptr;
 
   double expected_bytes() const;
-  analysis::StudyInput input() const { return {description, overrides, parameters, *kind}; }
+  analysis::StudyInput input() const { return {description, overrides, parameters, *kind, transients.get()}; }
 };
 
 /// Throws InvalidInput. What is planned refers to the rest of the study, which must stay where it is.

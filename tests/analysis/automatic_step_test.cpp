@@ -1,5 +1,6 @@
 #include <rubato/analysis/automatic_step.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include "support/free_vibration.hpp"
 #include "support/memory_sink.hpp"
@@ -43,8 +44,8 @@ Recorded run(const system::LocallyNonlinear& system, const model::TransientDescr
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
-  result.report = StructureTransient(system).run(
-      "run", plan_transient("run", {}, description, StructureTransient(system), {}), context);
+  result.report = run_transient("run", plan_transient("run", {}, description, integrate::StructureKind(system), {}),
+                                integrate::StructureKind(system), context);
   return result;
 }
 

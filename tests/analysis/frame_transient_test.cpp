@@ -1,5 +1,5 @@
 #include <rubato/analysis/modes.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/model/model.hpp>
@@ -51,8 +51,8 @@ Released let_go(const system::LocallyNonlinear& system, const model::StepDescrip
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{run.sink, progress, stop};
-  run.report = StructureTransient(system).run(
-      "run", plan_transient("run", {}, transient, StructureTransient(system), {}), context);
+  run.report = run_transient("run", plan_transient("run", {}, transient, integrate::StructureKind(system), {}),
+                             integrate::StructureKind(system), context);
   return run;
 }
 
@@ -189,7 +189,7 @@ TEST(ModesOfAFrame, HaveDisplacementsAndRotationsInTheirUnits) {
   const std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
   const integrate::StructureKind kind(system);
-  ASSERT_EQ(run_modes("modes", plan_modes("modes", {}, {}, kind, {}), kind, nullptr, context).status, RunStatus::done);
+  ASSERT_EQ(run_modes("modes", plan_modes("modes", {}, {}, kind, {}), kind, context).status, RunStatus::done);
   const auto& table = sink.tables.at("modes");
   ASSERT_EQ(table.rows.size(), 16u);
   EXPECT_NEAR(table.rows[0][table.column("angular_frequency")], 55.428662217, 1e-7);

@@ -30,7 +30,7 @@ Recorded run(const std::string& text) {
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
   const integrate::StructureKind kind(study.system);
-  result.report = run_modes("modes", plan_modes("modes", {}, {}, kind, study.parameters), kind, nullptr, context);
+  result.report = run_modes("modes", plan_modes("modes", {}, {}, kind, study.parameters), kind, context);
   return result;
 }
 

@@ -1,5 +1,5 @@
 #include <rubato/analysis/run_study.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
 
 #include "support/mechanism_study.hpp"
 #include "support/memory_sink.hpp"
@@ -51,12 +51,12 @@ Ran run(const std::string& model, double duration, const std::string& step = "{ 
   const auto& analysis = prepared.study.analyses.front();
   const TransientPlan plan =
       plan_transient(analysis.name, analysis.where, std::get<model::TransientDescription>(analysis.task),
-                     StructureTransient(prepared.system), prepared.parameters);
+                     *prepared.kind, prepared.parameters);
   Ran ran;
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{ran.sink, progress, stop};
-  ran.report = StructureTransient(prepared.system).run(analysis.name, plan, context);
+  ran.report = run_transient(analysis.name, plan, *prepared.kind, context);
   for (const auto& [key, value] : ran.report.statistics)
     if (key == "steps") ran.steps = std::stod(value);
   return ran;

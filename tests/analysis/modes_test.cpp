@@ -30,7 +30,7 @@ Recorded run(const system::LocallyNonlinear& system, const model::ModesDescripti
   const std::atomic<bool> stop{is_stopped};
   RunContext context{result.sink, progress, stop};
   const integrate::StructureKind kind(system);
-  result.report = run_modes("natural", plan_modes("natural", {}, description, kind, {}), kind, nullptr, context);
+  result.report = run_modes("natural", plan_modes("natural", {}, description, kind, {}), kind, context);
   return result;
 }
 

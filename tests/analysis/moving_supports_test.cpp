@@ -1,5 +1,5 @@
 #include <rubato/analysis/run_study.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/system/eliminate_supports.hpp>
@@ -27,13 +27,13 @@ testing::MemorySink run(const std::string& text) {
   const testing::PreparedStudy prepared(text);
   const auto& analysis = prepared.study.analyses.front();
   const auto& transient = std::get<model::TransientDescription>(analysis.task);
-  const TransientPlan plan = plan_transient(analysis.name, analysis.where, transient,
-                                            StructureTransient(prepared.system), prepared.parameters);
+  const TransientPlan plan =
+      plan_transient(analysis.name, analysis.where, transient, *prepared.kind, prepared.parameters);
   testing::MemorySink sink;
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
-  EXPECT_EQ(StructureTransient(prepared.system).run(analysis.name, plan, context).status, RunStatus::done);
+  EXPECT_EQ(run_transient(analysis.name, plan, *prepared.kind, context).status, RunStatus::done);
   return sink;
 }
 

@@ -56,5 +56,24 @@ TEST(StaticRounding, IsToldWhereItTakesTheDisplacements) {
   }
 }
 
+// The flow told nothing of where it started, unlike methods with a step.
+TEST(StaticRounding, IsToldByTheFlowThatStartsThere) {
+  std::string text = two_masses("[[spring]]\nbetween = [\"a\", \"b\"]\nstiffness = 5e13\n");
+  const auto replace = [&](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  replace("expression = \"1.3\"", "amplitude = 1.3\nangular_frequency = 1.0");
+  replace(
+      "type = \"static\"",
+      "type = \"transient\"\nmethod = \"exact\"\ninitial = \"static\"\nduration = 1e-6\noutput = { times = [0.0] }");
+  const testing::PreparedStudy study(text);
+  testing::MemorySink sink;
+  testing::QuietProgress progress;
+  const std::atomic<bool> stop{false};
+  analysis::RunContext context{sink, progress, stop};
+  const auto report = analysis::run_analysis(study.study.analyses.front(), study.input(), context);
+  EXPECT_THAT(report.warnings, ::testing::ElementsAre(::testing::HasSubstr("at the start displacements may err")));
+}
+
 }  // namespace
 }  // namespace rubato

@@ -1,5 +1,5 @@
 #include <rubato/analysis/run_study.hpp>
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
 
 #include "support/mechanism_study.hpp"
 #include "support/memory_sink.hpp"
@@ -32,13 +32,13 @@ output = { interval = 0.1 }
 )");
   const auto& analysis = prepared.study.analyses.front();
   const auto& transient = std::get<model::TransientDescription>(analysis.task);
-  const TransientPlan plan = plan_transient(analysis.name, analysis.where, transient,
-                                            StructureTransient(prepared.system), prepared.parameters);
+  const TransientPlan plan =
+      plan_transient(analysis.name, analysis.where, transient, *prepared.kind, prepared.parameters);
   testing::MemorySink sink;
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{sink, progress, stop};
-  EXPECT_EQ(StructureTransient(prepared.system).run(analysis.name, plan, context).status, RunStatus::done);
+  EXPECT_EQ(run_transient(analysis.name, plan, *prepared.kind, context).status, RunStatus::done);
   const auto& table = sink.tables.at("run");
   double error = 0.0;
   for (const auto& row : table.rows)

@@ -1,4 +1,5 @@
-#include <rubato/analysis/structure_transient.hpp>
+#include <rubato/analysis/transient.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 #include <rubato/system/assemble.hpp>
 
 #include "support/memory_sink.hpp"
@@ -44,8 +45,8 @@ Recorded run(const system::LocallyNonlinear& system, const model::TransientDescr
   testing::QuietProgress progress;
   const std::atomic<bool> stop{false};
   RunContext context{result.sink, progress, stop};
-  result.report =
-      StructureTransient(system).run("run", plan_transient("run", {}, d, StructureTransient(system), {}), context);
+  result.report = run_transient("run", plan_transient("run", {}, d, integrate::StructureKind(system), {}),
+                                integrate::StructureKind(system), context);
   return result;
 }
 
@@ -193,8 +194,9 @@ TEST(Transient, StopsWhenAskedAndKeepsWhatItHas) {
   const std::atomic<bool> stop{true};
   RunContext context{result.sink, progress, stop};
   const auto system = testing::single_mass();
-  result.report = StructureTransient(system).run(
-      "run", plan_transient("run", {}, description("rk4", 0.01, 1.0), StructureTransient(system), {}), context);
+  result.report = run_transient(
+      "run", plan_transient("run", {}, description("rk4", 0.01, 1.0), integrate::StructureKind(system), {}),
+      integrate::StructureKind(system), context);
   EXPECT_EQ(result.report.status, RunStatus::interrupted);
   EXPECT_EQ(result.report.message, "interrupted at t = 0.01 s of 1 s");
   EXPECT_EQ(result.table().rows.size(), 2u);
@@ -218,7 +220,7 @@ TEST(Transient, SaysWhenWhereAndWhatToTryWhenALoadIsNotFinite) {
 
 std::string refusal(const system::LocallyNonlinear& system, const model::TransientDescription& d) {
   try {
-    plan_transient("run", {"study.toml", 7, 1}, d, StructureTransient(system), {});
+    plan_transient("run", {"study.toml", 7, 1}, d, integrate::StructureKind(system), {});
   } catch (const InvalidInput& fault) {
     return fault.what();
   }

@@ -1,5 +1,5 @@
 #include <rubato/analysis/automatic_step.hpp>
-#include <rubato/analysis/transient_kind.hpp>
+#include <rubato/analysis/load_swings.hpp>
 
 #include <fmt/format.h>
 
@@ -19,8 +19,8 @@ integrate::Controller controller_of(const std::string& name) {
 }
 
 integrate::EstimatorKind estimator_of(const std::string& title, const model::StepDescription& description,
-                                      const TransientKind& kind, const TransientPlan& plan, double tolerance,
-                                      double reference) {
+                                      const integrate::SystemKind& kind, const integrate::MarchPlan& plan,
+                                      double tolerance, double reference) {
   const bool is_paper = description.estimator.empty() && description.controller == "cardona_cassano" &&
                         !std::holds_alternative<integrate::RungeKutta>(plan.method.formula) &&
                         integrate::is_of_second_order(plan.method);
@@ -33,7 +33,7 @@ integrate::EstimatorKind estimator_of(const std::string& title, const model::Ste
                        title + "\"reference\" and \"as_printed\" belong to the estimator inertia_jump");
   if (description.estimator == "local_error") return integrate::LocalError{tolerance};
   if (description.estimator == "embedded") return integrate::Embedded{tolerance};
-  return kind.default_estimator(plan, tolerance);
+  return kind.marches().default_estimator(plan, tolerance);
 }
 
 void plan_step_range(const std::string& title, const model::StepDescription& description,
@@ -85,8 +85,8 @@ double positive_or(const std::optional<model::Quantity>& quantity, double otherw
   return value;
 }
 
-AutomaticStep plan_automatic_step(const TransientRequest& request, const TransientKind& kind,
-                                  const TransientPlan& transient, std::vector<std::string>& warnings) {
+AutomaticStep plan_automatic_step(const integrate::TransientRequest& request, const integrate::SystemKind& kind,
+                                  const integrate::MarchPlan& march, std::vector<std::string>& warnings) {
   const model::StepDescription& description = *request.description.automatic_step;
   const std::string title = request.title() + "step: ";
   AutomaticStep step;
@@ -95,21 +95,21 @@ AutomaticStep plan_automatic_step(const TransientRequest& request, const Transie
   integrate::StepPlan& plan = step.plan;
   plan.controller = controller_of(description.controller);
   plan.rebuild = description.rebuild;
-  kind.plan_events(title, description, transient, plan);
-  const LoadSwings swings = kind.swings(transient.duration);
-  const double safe = std::min(transient.duration / 50.0, swings.harmonic_limit());
+  kind.marches().plan_events(title, description, march, plan);
+  const LoadSwings swings(kind, march.duration);
+  const double safe = std::min(march.duration / 50.0, swings.harmonic_limit());
   const double wanted = positive_or(description.largest, safe, title + "largest", request.parameters);
-  plan.largest = kind.largest_step(title, description, transient, std::min(transient.duration, wanted));
-  plan_step_range(title, description, request.parameters, transient.duration, plan);
+  plan.largest = kind.marches().largest_step(title, description, march, std::min(march.duration, wanted));
+  plan_step_range(title, description, request.parameters, march.duration, plan);
   plan_swings(description, swings, plan, warnings);
-  step.estimator = estimator_of(title, description, kind, transient, step.tolerance, reference);
+  step.estimator = estimator_of(title, description, kind, march, step.tolerance, reference);
   try {
-    kind.try_estimator(transient, step);
+    kind.marches().try_estimator(march, step);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(description.tolerance.where, title + fault.message());
   }
   const bool is_fixed = std::holds_alternative<integrate::FixedStep>(plan.controller);
-  step.expected_steps = is_fixed ? std::ceil(transient.duration / plan.first) : swings.least_steps(plan);
+  step.expected_steps = is_fixed ? std::ceil(march.duration / plan.first) : swings.least_steps(plan);
   return step;
 }
 
@@ -156,7 +156,7 @@ std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticS
 }
 
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report,
-                                                            const TransientPlan& plan, double length) {
+                                                            const integrate::MarchPlan& plan, double length) {
   if (!plan.automatic)
     return {{"steps", std::to_string(report.march.steps)}, {"factorisations", std::to_string(report.factorisations)}};
   std::vector<std::pair<std::string, std::string>> all{

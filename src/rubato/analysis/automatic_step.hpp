@@ -1,6 +1,7 @@
 #pragma once
 
-#include <rubato/integrate/adaptive_march.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/integrate/march_plan.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/results/sink.hpp>
 
@@ -12,18 +13,7 @@
 
 namespace rubato::analysis {
 
-class TransientKind;
-struct TransientPlan;
-struct TransientRequest;
-
-/// A step that chooses itself, with all its values.
-struct AutomaticStep {
-  integrate::StepPlan plan;
-  integrate::EstimatorKind estimator;
-  double tolerance = 1e-3;
-  bool asks_for_tolerance = true;  ///< false: equal steps of a mechanism, whose error nobody asked for
-  double expected_steps = 0.0;     ///< at least: what the largest step takes; for the size of files
-};
+using integrate::AutomaticStep;
 
 /// A value that must be positive where it is given. Throws InvalidInput at its place.
 double positive_or(const std::optional<model::Quantity>& quantity, double otherwise, const std::string& what,
@@ -34,8 +24,8 @@ double positive_or(const std::optional<model::Quantity>& quantity, double otherw
 /// the duration; largest a fiftieth of it, at most a sixth of the shortest period of a harmonic load and, unless
 /// `allow_unstable`, the stability limit of the method; where formulas of loads swing, shorter. Throws InvalidInput at
 /// the place of the value.
-AutomaticStep plan_automatic_step(const TransientRequest& request, const TransientKind& kind,
-                                  const TransientPlan& transient, std::vector<std::string>& warnings);
+AutomaticStep plan_automatic_step(const integrate::TransientRequest& request, const integrate::SystemKind& kind,
+                                  const integrate::MarchPlan& march, std::vector<std::string>& warnings);
 
 /// Streams every try of a step into the table `steps`: time, step, error and what became of it.
 class StepRecorder final : public integrate::TryLog {
@@ -59,6 +49,6 @@ std::string warning_of(const integrate::AdaptiveReport& report, const AutomaticS
 
 /// What the march counted, for the results.
 std::vector<std::pair<std::string, std::string>> statistics(const integrate::AdaptiveReport& report,
-                                                            const TransientPlan& plan, double length);
+                                                            const integrate::MarchPlan& plan, double length);
 
 }  // namespace rubato::analysis

@@ -1,3 +1,4 @@
+#include <rubato/analysis/automatic_step.hpp>
 #include <rubato/analysis/failure_text.hpp>
 
 #include <fmt/format.h>
@@ -118,7 +119,7 @@ std::string explanation(const MarchFailure& failure) {
 
 }  // namespace
 
-std::string advice_on_step(const MarchFailure& failure, const TransientPlan& plan) {
+std::string advice_on_step(const MarchFailure& failure, const integrate::MarchPlan& plan) {
   if (!plan.automatic) return "take a smaller step";
   const AutomaticStep& step = *plan.automatic;
   const bool is_fixed = std::holds_alternative<integrate::FixedStep>(step.plan.controller);

@@ -24,20 +24,19 @@ void warn_of_motion(const system::State& state, const system::System& system, st
       system.coordinates()[static_cast<std::size_t>(place)], most, system.is_rotation(place) ? "rad/s" : "m/s"));
 }
 
-ModesPlan::Reached reached_by(const integrate::ModesRequest& request, const StudyTransients* transients) {
+ModesPlan::Reached reached_by(const integrate::ModesRequest& request, StudyTransients* transients) {
   static const std::vector<model::AnalysisDescription> none;
   const model::ReachedDescription& description = *request.description.about_reached;
   std::vector<std::string> known;
-  for (const model::AnalysisDescription& analysis : (transients ? transients->analyses : none)) {
-    const auto* transient = std::get_if<model::TransientDescription>(&analysis.task);
-    if (!transient) continue;
+  for (const model::AnalysisDescription& analysis : transients ? transients->analyses() : none) {
+    if (!std::holds_alternative<model::TransientDescription>(analysis.task)) continue;
     known.push_back(analysis.name);
     if (analysis.name != description.analysis) continue;
     ModesPlan::Reached reached;
-    reached.motion = plan_transient(analysis.name, analysis.where, *transient, transients->kind, request.parameters);
+    reached.motion = transients->plan(analysis);
     reached.analysis = analysis.name;
     reached.settles = description.settles;
-    const double duration = reached.motion.duration;
+    const double duration = reached.motion->march.duration;
     reached.time = description.time
                        ? model::evaluate(*description.time, request.parameters, request.title + "about: time")
                        : duration;
@@ -74,8 +73,8 @@ class Listener final : public integrate::Observer {
 
 /// Marches to the configuration that is asked for, and holds it still. What went wrong stands in the report.
 system::State reach(const std::string& name, const ModesPlan::Reached& reached, const integrate::SystemKind& kind,
-                    const TransientKind& transients, RunContext& context, RunReport& report) {
-  const auto march = transients.march(reached.motion);
+                    RunContext& context, RunReport& report) {
+  const auto march = kind.marches().march(reached.motion->march);
   Listener listener(context);
   context.progress.begin(name, reached.time, "s of motion");
   const integrate::AdaptiveReport marched = march->go_to(reached.time, &listener, nullptr);
@@ -84,7 +83,7 @@ system::State reach(const std::string& name, const ModesPlan::Reached& reached, 
   if (marched.march.end == integrate::MarchEnd::failed) {
     report.status = RunStatus::failed;
     const integrate::MarchFailure failure = march->failure(marched.march);
-    report.message = text_of(failure, advice_on_step(failure, reached.motion));
+    report.message = text_of(failure, advice_on_step(failure, reached.motion->march));
   } else if (march->state().t < reached.time) {
     report.status = RunStatus::interrupted;
     report.message = fmt::format("interrupted at t = {} s of {} s", march->state().t, reached.time);
@@ -177,7 +176,7 @@ void tell_of(const integrate::FreeMotions& motions, std::size_t limit, const Mod
 
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
                      const integrate::SystemKind& kind, const numerics::Parameters& parameters,
-                     const StudyTransients* transients) {
+                     StudyTransients* transients) {
   const std::string title = "analysis \"" + name + "\": ";
   const integrate::ModesRequest request{title, where, description, parameters};
   ModesPlan plan;
@@ -186,7 +185,7 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
   plan.observed = observed_or_all(description.observe, {kind.system(), kind.supports()});
   if (description.about_reached) {
     plan.reached = reached_by(request, transients);
-    plan.warnings = plan.reached->motion.warnings;
+    plan.warnings = plan.reached->motion->march.warnings;
     return plan;
   }
   plan.state = kind.static_start(where, plan.warnings);
@@ -202,18 +201,18 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
 }
 
 RunReport run_modes(const std::string& name, const ModesPlan& plan, const integrate::SystemKind& kind,
-                    const TransientKind* transients, RunContext& context) {
+                    RunContext& context) {
   RunReport report;
   report.warnings = plan.warnings;
   report.message = plan.failure;
-  if (plan.reached && !plan.reached->motion.failure.empty())
-    report.message = fmt::format("\"{}\" leads nowhere: {}", plan.reached->analysis, plan.reached->motion.failure);
+  if (plan.reached && !plan.reached->motion->march.failure.empty())
+    report.message =
+        fmt::format("\"{}\" leads nowhere: {}", plan.reached->analysis, plan.reached->motion->march.failure);
   if (!report.message.empty()) {
     report.status = RunStatus::failed;
     return report;
   }
-  const system::State state =
-      plan.reached ? reach(name, *plan.reached, kind, *transients, context, report) : plan.state;
+  const system::State state = plan.reached ? reach(name, *plan.reached, kind, context, report) : plan.state;
   if (!report.message.empty()) return report;
   const auto limits = motions_of(name, plan, kind, state, context);
   if (plan.reached)

@@ -2,21 +2,16 @@
 
 #include <rubato/analysis/observed.hpp>
 #include <rubato/analysis/run_context.hpp>
-#include <rubato/analysis/transient_kind.hpp>
+#include <rubato/analysis/study_transients.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/kinds/system_kind.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace rubato::analysis {
-
-/// The transients of a study, to which modes may refer.
-struct StudyTransients {
-  const std::vector<model::AnalysisDescription>& analyses;  ///< all of the study
-  const TransientKind& kind;
-};
 
 /// Natural modes about a state at rest: the start, a static equilibrium, or where a transient leads; of a structure in
 /// the limits of its sliders, `free`, all removed, and `stuck`, all of them springs kT. Without sliders there is the
@@ -24,7 +19,7 @@ struct StudyTransients {
 struct ModesPlan {
   /// The transient that leads there, which the analysis marches again.
   struct Reached {
-    TransientPlan motion;
+    std::shared_ptr<const TransientPlan> motion;
     std::string analysis;
     double time = 0.0;     ///< [s]
     bool settles = false;  ///< and on to the equilibrium next to it
@@ -42,15 +37,14 @@ struct ModesPlan {
 
 /// Evaluates a description and finds the configuration. Throws InvalidInput, at its place, for a mechanism that cannot
 /// be assembled, a transient that is none of the study's, a count that no such system has, and a model too large.
-/// @param transients  null: the study has none
+/// @param transients  to which it may refer; null: the study has none
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
                      const integrate::SystemKind& kind, const numerics::Parameters& parameters,
-                     const StudyTransients* transients = nullptr);
+                     StudyTransients* transients = nullptr);
 
 /// Writes the table of modes; rotations in space are about the axes of the nodes. Modes that did not converge, or that
 /// a count shows to be missing, are a failure; those found are written. So is a configuration that is not stable.
-/// @param transients  of the system; may be null where the plan refers to none
 RunReport run_modes(const std::string& name, const ModesPlan& plan, const integrate::SystemKind& kind,
-                    const TransientKind* transients, RunContext& context);
+                    RunContext& context);
 
 }  // namespace rubato::analysis

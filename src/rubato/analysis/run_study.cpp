@@ -7,7 +7,8 @@
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
-#include <rubato/analysis/transient_kind.hpp>
+#include <rubato/analysis/study_transients.hpp>
+#include <rubato/analysis/transient.hpp>
 #include <rubato/core/stopping.hpp>
 #include <rubato/results/drawing/kind_drawing.hpp>
 #include <rubato/results/drawing/structure_drawing.hpp>
@@ -43,7 +44,7 @@ std::vector<std::string> warnings_of(const Plan& plan) {
 AnalysisOutline outline(const TransientPlan& plan) {
   // A number takes 8 bytes in netCDF and about 20 in CSV.
   AnalysisOutline result{summary(plan), plan.rows * plan.columns * 28.0};
-  result.warnings = warnings_of(plan);
+  result.warnings = warnings_of(plan.march);
   return result;
 }
 
@@ -96,12 +97,12 @@ AnalysisOutline outline(const ModesPlan& plan, const integrate::SystemKind& kind
 struct Plan {
   const model::AnalysisDescription& analysis;
   const StudyInput& input;
+  StudyTransients& transients;
 
-  PlannedAnalysis operator()(const model::TransientDescription& transient) const {
-    const auto plan = std::make_shared<const TransientPlan>(
-        plan_transient(analysis.name, analysis.where, transient, *transient_kind(input.kind), input.parameters));
+  PlannedAnalysis operator()(const model::TransientDescription&) const {
+    const auto plan = transients.plan(analysis);
     return {outline(*plan), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-              return transient_kind(at.kind)->run(name, *plan, context);
+              return run_transient(name, *plan, at.kind, context);
             }};
   }
 
@@ -119,12 +120,10 @@ struct Plan {
 
   PlannedAnalysis operator()(const model::ModesDescription& modes) const {
     const integrate::SystemKind& kind = input.kind;
-    const auto transients = transient_kind(input.kind);
-    const StudyTransients others{input.study.analyses, *transients};
     const auto plan = std::make_shared<const ModesPlan>(
-        plan_modes(analysis.name, analysis.where, modes, kind, input.parameters, &others));
+        plan_modes(analysis.name, analysis.where, modes, kind, input.parameters, &transients));
     return {outline(*plan, kind), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
-              return run_modes(name, *plan, at.kind, transient_kind(at.kind).get(), context);
+              return run_modes(name, *plan, at.kind, context);
             }};
   }
 
@@ -212,7 +211,9 @@ RunReport stopped() { return {RunStatus::interrupted, "interrupted before it had
 }  // namespace
 
 PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
-  PlannedAnalysis planned = std::visit(Plan{analysis, input}, analysis.task);
+  StudyTransients own(input.study.analyses, input.kind, input.parameters);
+  PlannedAnalysis planned =
+      std::visit(Plan{analysis, input, input.transients ? *input.transients : own}, analysis.task);
   const bool moves = !std::holds_alternative<model::StaticDescription>(analysis.task);
   if (const auto warning = moves ? warning_of_modal_damping(input) : std::nullopt) {
     planned.outline.warnings.push_back(*warning);

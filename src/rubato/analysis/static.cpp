@@ -42,23 +42,17 @@ std::vector<std::string> findings_of(const integrate::Equilibrium& found) {
 
 }  // namespace
 
-integrate::Equilibrium equilibrium_of(const integrate::StaticRequest& request, const integrate::SystemKind& kind) {
-  std::vector<std::string> warnings;
-  const std::vector<model::Held> held = kind.held_displacements(request);
-  return required(request, kind, kind.static_start(request.where, warnings), held);
-}
-
 StaticPlan plan_static(const std::string& name, const Location& where, const model::StaticDescription& description,
                        const integrate::SystemKind& kind) {
   StaticPlan plan;
   plan.title = "analysis \"" + name + "\": ";
   const integrate::StaticRequest request{plan.title, where, description};
+  results::check_section_forces(kind, description.section_forces, plan.title);
   plan.held = kind.held_displacements(request);
   plan.start = kind.static_start(where, plan.warnings);
   if (kind.finds_equilibrium_at_once()) plan.found = required(request, kind, plan.start, plan.held);
   plan.observed = observed_or_all(description.observe, {kind.system(), kind.supports()});
   plan.section_forces = description.section_forces;
-  (void)results::columns_of_equilibrium(kind, plan.observed, plan.section_forces, plan.title);
   return plan;
 }
 

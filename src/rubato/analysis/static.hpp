@@ -21,11 +21,6 @@ struct StaticPlan {
   std::vector<std::string> warnings = {};       ///< of what the start took
 };
 
-/// The equilibrium that a description asks for, of a system whose equilibrium is found at once. Throws InvalidInput at
-/// its place for a displacement that the model does not hold, and where there is no equilibrium, naming the coordinates
-/// that move.
-integrate::Equilibrium equilibrium_of(const integrate::StaticRequest& request, const integrate::SystemKind& kind);
-
 /// Evaluates a description. Throws InvalidInput.
 StaticPlan plan_static(const std::string& name, const Location& where, const model::StaticDescription& description,
                        const integrate::SystemKind& kind);

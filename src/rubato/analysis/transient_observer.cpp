@@ -56,7 +56,7 @@ double TransientObserver::next_time() const {
 
 void TransientObserver::record_between(const system::State& before, const system::State& after) {
   // Also of multiples of an interval that are the end of the run, however short its last step.
-  const double round_off = std::max(1e-9 * (after.t - before.t), 1e-12 * plan_.duration);
+  const double round_off = std::max(1e-9 * (after.t - before.t), 1e-12 * plan_.march.duration);
   interpolation_.take(before, after);
   for (double t = next_time(); t <= after.t + round_off; t = next_time()) {
     ++next_;

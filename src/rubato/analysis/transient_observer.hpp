@@ -25,7 +25,9 @@ class TransientObserver final : public integrate::Observer {
 
  private:
   /// How many steps there will be is not known of automatic ones.
-  double progress(const system::State& state) const { return plan_.automatic ? state.t : static_cast<double>(steps_); }
+  double progress(const system::State& state) const {
+    return plan_.march.automatic ? state.t : static_cast<double>(steps_);
+  }
   void record(const system::State& before, const system::State& now, bool is_balanced = false);
   void record_between(const system::State& before, const system::State& after);
   double next_time() const;

@@ -1,5 +1,8 @@
-#include <rubato/analysis/transient_kind.hpp>
+#include <rubato/analysis/equilibrium_text.hpp>
+#include <rubato/analysis/load_swings.hpp>
+#include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/results/columns/kind_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -8,6 +11,8 @@
 namespace rubato::analysis {
 namespace {
 
+using integrate::MarchPlan;
+using integrate::TransientRequest;
 using Kind = model::OutputDescription::Kind;
 
 Location place(const Location& wanted, const Location& otherwise) { return wanted.line > 0 ? wanted : otherwise; }
@@ -24,10 +29,10 @@ double positive(const model::Quantity& quantity, const numerics::Parameters& par
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where) {
   plan.output = output.kind;
-  const bool is_exact = std::holds_alternative<integrate::Exact>(plan.method.formula);
-  const double steps = is_exact         ? 0.0
-                       : plan.automatic ? plan.automatic->expected_steps
-                                        : std::ceil(plan.duration / plan.step);
+  const bool is_exact = std::holds_alternative<integrate::Exact>(plan.march.method.formula);
+  const double steps = is_exact               ? 0.0
+                       : plan.march.automatic ? plan.march.automatic->expected_steps
+                                              : std::ceil(plan.march.duration / plan.march.step);
   switch (output.kind) {
     case Kind::every_step:
       plan.rows = steps + 1.0;
@@ -44,7 +49,7 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
       break;
     case Kind::interval:
       plan.interval = positive(output.interval, parameters, "interval", where);
-      plan.rows = std::floor(plan.duration / plan.interval) + 1.0;
+      plan.rows = std::floor(plan.march.duration / plan.interval) + 1.0;
       if (plan.rows > 1e12)
         throw InvalidInput(place(output.interval.where, where),
                            fmt::format("an interval of {} s makes {:.3g} rows, more than can be written (1e12)",
@@ -54,9 +59,9 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
       for (const auto& quantity : output.times) {
         const double t = model::evaluate(quantity, parameters, "times");
         const double last = plan.times.empty() ? -1.0 : plan.times.back();
-        if (!(t >= 0.0 && t <= plan.duration))
+        if (!(t >= 0.0 && t <= plan.march.duration))
           throw InvalidInput(place(quantity.where, where),
-                             fmt::format("times: {} s lies outside the run from 0 s to {} s", t, plan.duration));
+                             fmt::format("times: {} s lies outside the run from 0 s to {} s", t, plan.march.duration));
         if (!(t > last))
           throw InvalidInput(place(quantity.where, where), fmt::format("times must rise, got {} after {}", t, last));
         plan.times.push_back(t);
@@ -66,7 +71,39 @@ void plan_output(TransientPlan& plan, const model::OutputDescription& output, co
   }
 }
 
-void plan_steps(const TransientRequest& request, const TransientKind& kind, TransientPlan& plan) {
+/// Sets the start of a plan, what it took among the warnings, and the failure where there is none. Of a system whose
+/// equilibrium is found at once that one is missing is refused.
+void find_start(const TransientRequest& request, const integrate::SystemKind& kind, MarchPlan& plan) {
+  const integrate::MarchKind& marches = kind.marches();
+  plan.start = marches.start(request, plan.warnings);
+  if (const auto& initial = request.description.initial) {
+    const std::string title = request.title();
+    const auto held = kind.held_displacements({title, request.where, *initial});
+    const integrate::Equilibrium found = kind.find_equilibrium(plan.start, held);
+    if (const std::string why = complaint(found); why.empty()) {
+      if (const std::string rounding = warning_of_rounding(found); !rounding.empty())
+        plan.warnings.push_back("at the start " + rounding);
+      if (!found.is_stable)
+        plan.warnings.push_back(
+            "the equilibrium at the start is not stable: what moves from there begins with round-off");
+      plan.start = marches.set_in_motion(request.where, found.state, plan.warnings);
+    } else if (kind.finds_equilibrium_at_once()) {
+      throw InvalidInput(request.where, title + why);
+    } else {
+      plan.failure = "it has no static start: " + why;
+    }
+  }
+  marches.settle_start(request.where, plan);
+}
+
+/// How many columns a row has, roughly.
+double expected_columns(const TransientPlan& plan, const integrate::SystemKind& kind) {
+  const double observed = 3.0 * static_cast<double>(plan.observed.size());
+  if (kind.is_constrained()) return 10.0 + observed;
+  return 1.0 + observed + 2.0 * static_cast<double>(kind.nonlinear_parts().size()) + (plan.energy ? 8.0 : 0.0);
+}
+
+void plan_steps(const TransientRequest& request, const integrate::SystemKind& kind, MarchPlan& plan) {
   const model::TransientDescription& description = request.description;
   const std::string title = request.title();
   if (description.automatic_step) {
@@ -83,8 +120,8 @@ void plan_steps(const TransientRequest& request, const TransientKind& kind, Tran
   if (plan.duration / plan.step > 1e12)
     throw InvalidInput(at, fmt::format("{}{:.3g} steps of {} s are more than a run can take (1e12)", title,
                                        plan.duration / plan.step, plan.step));
-  kind.take_equal_steps(request, plan);
-  kind.swings(plan.duration).warn_of_long_steps(plan.step, plan.warnings);
+  kind.marches().take_equal_steps(request, plan);
+  LoadSwings(kind, plan.duration).warn_of_long_steps(plan.step, plan.warnings);
 }
 
 }  // namespace
@@ -101,27 +138,30 @@ integrate::Method method_of(const model::MethodDescription& description, const n
 }
 
 TransientPlan plan_transient(const std::string& name, const Location& where,
-                             const model::TransientDescription& description, const TransientKind& kind,
+                             const model::TransientDescription& description, const integrate::SystemKind& kind,
                              const numerics::Parameters& parameters) {
   const TransientRequest request{name, where, description, parameters};
   TransientPlan plan;
-  plan.method = method_of(description.method, parameters);
+  MarchPlan& march = plan.march;
+  march.method = method_of(description.method, parameters);
+  march.allow_unstable = description.allow_unstable;
+  march.project_velocities = description.project_velocities;
+  march.duration = positive(description.duration, parameters, request.title() + "duration", where);
+  results::check_section_forces(kind, description.section_forces, request.title());
+  kind.marches().check(request, march);
+  find_start(request, kind, march);
+  plan_steps(request, kind, march);
   plan.energy = description.energy;
-  plan.allow_unstable = description.allow_unstable;
-  plan.project_velocities = description.project_velocities;
   plan.section_forces = description.section_forces;
-  plan.duration = positive(description.duration, parameters, request.title() + "duration", where);
-  kind.check(request, plan);
-  kind.find_start(request, plan);
-  plan_steps(request, kind, plan);
   plan_output(plan, description.output, parameters, where);
-  kind.check_loads(request, plan);
-  plan.observed = observed_or_all(description.observe, kind.observable());
-  plan.columns = kind.expected_columns(plan);
+  kind.marches().check_loads(request, march);
+  plan.observed = observed_or_all(description.observe, {kind.system(), kind.supports(), Supports::observed});
+  plan.columns = expected_columns(plan, kind);
   return plan;
 }
 
-std::string summary(const TransientPlan& plan) {
+std::string summary(const TransientPlan& of) {
+  const MarchPlan& plan = of.march;
   if (plan.step > 0.0)
     return fmt::format("transient, {}, {:.0f} steps of {} s to t = {} s", plan.method.name,
                        std::ceil(plan.duration / plan.step * (1.0 - 1e-12)), plan.step, plan.duration);

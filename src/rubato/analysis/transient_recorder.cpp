@@ -21,10 +21,10 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
                                      integrate::Balance& balance, integrate::EnergyLedger* ledger, results::Sink& sink)
     : groups_(std::move(groups)), balance_(balance), ledger_(ledger) {
   results::TableLayout layout{
-      name, "", "time", {{"time", "s", "time", "", {}}}, {{"type", "transient"}, {"method", plan.method.name}}};
-  if (plan.step > 0.0) layout.attributes.emplace_back("step", fmt::format("{} s", plan.step));
-  if (plan.automatic) layout.attributes.emplace_back("step", summary(*plan.automatic));
-  layout.attributes.emplace_back("duration", fmt::format("{} s", plan.duration));
+      name, "", "time", {{"time", "s", "time", "", {}}}, {{"type", "transient"}, {"method", plan.march.method.name}}};
+  if (plan.march.step > 0.0) layout.attributes.emplace_back("step", fmt::format("{} s", plan.march.step));
+  if (plan.march.automatic) layout.attributes.emplace_back("step", summary(*plan.march.automatic));
+  layout.attributes.emplace_back("duration", fmt::format("{} s", plan.march.duration));
   for (const auto& group : groups_) {
     group->add(layout);
     if (group->has_sums()) summing_.push_back(group.get());

@@ -1,9 +1,8 @@
 // A pendulum let go from the horizontal, as a program that embeds the analyses of Rubato would run it: a study, its
-// mechanism, and a sink of the program's own that takes the rows.
-#include <rubato/analysis/mechanism_transient.hpp>
+// system, and a sink of the program's own that takes the rows.
+#include <rubato/analysis/transient.hpp>
+#include <rubato/integrate/kinds/assemble_kind.hpp>
 #include <rubato/io/read_study.hpp>
-#include <rubato/model/build_mechanism.hpp>
-#include <rubato/system/mechanism.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -55,17 +54,16 @@ int main() {
           std::to_string(5.0 * quarter) + " }]\n",
       "pendulum.toml");
   const auto parameters = rubato::model::evaluate_parameters(study.parameters);
-  const rubato::system::Mechanism mechanism(rubato::model::build_mechanism(study.model, parameters));
+  const auto pendulum = rubato::integrate::assemble_kind(study.model, parameters);
   const auto& analysis = study.analyses.front();
   const auto& transient = std::get<rubato::model::TransientDescription>(analysis.task);
-  const rubato::analysis::MechanismTransient motion(mechanism);
-  const auto plan = rubato::analysis::plan_transient(analysis.name, analysis.where, transient, motion, parameters);
+  const auto plan = rubato::analysis::plan_transient(analysis.name, analysis.where, transient, *pendulum, parameters);
 
   LastRow sink;
   Silent progress;
   const std::atomic<bool> stop{false};
   rubato::analysis::RunContext context{sink, progress, stop};
-  const auto report = motion.run(analysis.name, plan, context);
+  const auto report = rubato::analysis::run_transient(analysis.name, plan, *pendulum, context);
   if (report.status != rubato::analysis::RunStatus::done || sink.row.size() < 3) {
     std::printf("%s\n", report.message.c_str());
     return 1;

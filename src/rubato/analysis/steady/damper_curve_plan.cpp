@@ -81,7 +81,7 @@ void plan_objective(DamperCurvePlan& plan, const Description& description, const
   if (plan.objective == Description::Objective::dissipated && input.structure().slider_count() == 0)
     throw InvalidInput(place_or(description.objective_where, where),
                        title + "objective = \"dissipated\" needs sliders, and the model has none");
-  plan.observed = observed_or_all(description.observe, {input.structure(), input.structure().supports()});
+  plan.observed = observed_or_all(description.observe, {input.kind.system(), input.kind.supports()});
   if (!plan.observed.empty() && plan.observed.front().is_rotation != plan.observed.back().is_rotation) {
     if (description.observe)
       throw InvalidInput(where,

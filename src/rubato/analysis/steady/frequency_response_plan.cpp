@@ -135,7 +135,7 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
 
 void plan_request(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                   const std::string& title, const Location& where) {
-  plan.observed = observed_or_all(description.observe, {input.structure(), input.structure().supports()});
+  plan.observed = observed_or_all(description.observe, {input.kind.system(), input.kind.supports()});
   for (const auto& observed : plan.observed) plan.request.observed.push_back({observed.first, observed.second});
   plan.request.harmonics = {1};
   for (const auto& quantity : description.harmonics) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/kinds/mechanism_marches.hpp>
 #include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/system/mechanism.hpp>
 
@@ -17,6 +18,8 @@ class MechanismKind final : public SystemKind {
       : owned_(std::move(mechanism)), mechanism_(*owned_) {}
 
   const system::System& system() const override { return mechanism_; }
+  const system::State& start() const override { return mechanism_.start(); }
+  double reference() const override { return mechanism_.reference(); }
   bool is_constrained() const override { return true; }
   void show(KindVisitor& visitor) const override { visitor.mechanism(mechanism_); }
   /// Rows of locks that are open and of friction count nothing. What is left is what Gruebler and Kutzbach count,
@@ -24,6 +27,8 @@ class MechanismKind final : public SystemKind {
   std::string summary() const override;
   std::vector<NonlinearPart> nonlinear_parts() const override;
   void for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const override;
+
+  const MarchKind& marches() const override { return marches_; }
 
   std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
   /// Assembles the mechanism; throws where it cannot be.
@@ -41,6 +46,7 @@ class MechanismKind final : public SystemKind {
  private:
   std::unique_ptr<const system::Mechanism> owned_;  // null: it is lent
   const system::Mechanism& mechanism_;
+  MechanismMarches marches_{mechanism_};
 };
 
 }  // namespace rubato::integrate

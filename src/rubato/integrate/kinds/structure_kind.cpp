@@ -62,12 +62,19 @@ void StructureKind::for_each_time_law(const std::function<void(const model::Time
     if (const numerics::Formula* formula = law.law->formula_of_time()) show(model::FormulaLaw{*formula});
 }
 
+std::optional<HarmonicOscillator> StructureKind::oscillator() const {
+  const auto& terms = system_.loads().terms();
+  const auto* load = terms.size() == 1 ? std::get_if<model::HarmonicLaw>(&terms.front().law) : nullptr;
+  if (!load || system_.size() != 1 || system_.contact_count() > 0) return std::nullopt;
+  if (system_.start().q[0] != 0.0 || system_.start().v[0] != 0.0) return std::nullopt;
+  double weight = 0.0;
+  for (const double w : terms.front().weights) weight += w;
+  return HarmonicOscillator{system_.mass().coeff(0, 0), system_.damping().coeff(0, 0), system_.stiffness().coeff(0, 0),
+                            weight * load->amplitude,   load->angular_frequency,       load->phase};
+}
+
 std::vector<model::Held> StructureKind::held_displacements(const StaticRequest& request) const {
   const model::StaticDescription& description = request.description;
-  if (description.section_forces.is_wanted())
-    throw InvalidInput(description.section_forces.where, request.title +
-                                                             "section_forces are kept of geometrically exact beams, in "
-                                                             "mechanisms; leave it out");
   if (!description.displacements) return system_.held_displacements();
   std::vector<std::string> known;
   for (const auto& held : system_.held_displacements())

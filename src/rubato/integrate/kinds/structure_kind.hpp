@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/kinds/structure_marches.hpp>
 #include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -17,6 +18,8 @@ class StructureKind final : public SystemKind {
       : owned_(std::move(system)), system_(*owned_) {}
 
   const system::System& system() const override { return system_; }
+  const system::State& start() const override { return system_.start(); }
+  double reference() const override { return system_.reference(); }
   const system::MovingSupports* supports() const override { return system_.supports(); }
   bool is_constrained() const override { return false; }
   void show(KindVisitor& visitor) const override { visitor.structure(system_); }
@@ -28,6 +31,9 @@ class StructureKind final : public SystemKind {
   std::unique_ptr<const SystemKind> for_thread() const override {
     return std::make_unique<StructureKind>(std::make_unique<const system::LocallyNonlinear>(system_));
   }
+
+  std::optional<HarmonicOscillator> oscillator() const override;
+  const MarchKind& marches() const override { return marches_; }
 
   std::vector<model::Held> held_displacements(const StaticRequest& request) const override;
   system::State static_start(const Location&, std::vector<std::string>&) const override { return system_.start(); }
@@ -43,6 +49,7 @@ class StructureKind final : public SystemKind {
  private:
   std::unique_ptr<const system::LocallyNonlinear> owned_;  // null: it is lent
   const system::LocallyNonlinear& system_;
+  StructureMarches marches_{system_};
 };
 
 }  // namespace rubato::integrate

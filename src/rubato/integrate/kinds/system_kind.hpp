@@ -3,6 +3,7 @@
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/equilibrium/equilibrium.hpp>
 #include <rubato/integrate/equilibrium/free_motions.hpp>
+#include <rubato/integrate/kinds/march_kind.hpp>
 #include <rubato/integrate/kinds/nonlinear_part.hpp>
 #include <rubato/model/description.hpp>
 #include <rubato/model/time_law.hpp>
@@ -11,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +49,12 @@ struct ModesRequest {
   const numerics::Parameters& parameters;
 };
 
+/// m q'' + c q' + k q = amplitude cos(angular_frequency t + phase), from rest.
+struct HarmonicOscillator {
+  double mass = 0.0, damping = 0.0, stiffness = 0.0;             ///< [kg], [N s/m], [N/m]
+  double amplitude = 0.0, angular_frequency = 0.0, phase = 0.0;  ///< [N], [rad/s], [rad]
+};
+
 /// A system as analyses see it: what they ask of its equations, which each kind of system finds in its own way. Const;
 /// a workspace is made in each call.
 ///
@@ -56,6 +64,10 @@ class SystemKind {
   virtual ~SystemKind() = default;
 
   virtual const system::System& system() const = 0;
+  /// At t = 0 as given: one with constraints need not fulfil them.
+  virtual const system::State& start() const = 0;
+  /// A characteristic size for error measures [m sqrt(kg)]; 0: it has none.
+  virtual double reference() const = 0;
   /// Null where no support moves.
   virtual const system::MovingSupports* supports() const { return nullptr; }
   /// Whether joints hold it: it is a mechanism.
@@ -74,6 +86,11 @@ class SystemKind {
   /// Shows what acts as a function of time: loads, motions that are prescribed (and their accelerations, which loads
   /// follow), laws that say by which formula they do.
   virtual void for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const = 0;
+
+  /// All of the system, where it is no more than that.
+  virtual std::optional<HarmonicOscillator> oscillator() const { return std::nullopt; }
+  /// Its transients.
+  virtual const MarchKind& marches() const = 0;
 
   // Statics
   /// The displacements that a study holds; refuses keys that do not go with the kind.

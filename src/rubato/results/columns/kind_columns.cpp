@@ -1,7 +1,10 @@
+#include <rubato/core/error.hpp>
+#include <rubato/results/columns/beam_section_forces.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/results/columns/kind_columns.hpp>
 #include <rubato/results/columns/law_columns.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
+#include <rubato/results/columns/structure_columns.hpp>
 
 namespace rubato::results {
 
@@ -31,6 +34,46 @@ OwnedColumns columns_of_equilibrium(const integrate::SystemKind& kind, const std
   Maker maker(observed, section_forces, title);
   kind.show(maker);
   return std::move(maker.made);
+}
+
+ColumnGroups columns_of_motion(integrate::March& march, const std::vector<Observed>& observed,
+                               const model::SectionForcesDescription& section_forces) {
+  struct Maker final : integrate::MarchVisitor {
+    const std::vector<Observed>& observed;
+    const model::SectionForcesDescription& section_forces;
+    ColumnGroups made;
+
+    Maker(const std::vector<Observed>& shown, const model::SectionForcesDescription& forces)
+        : observed(shown), section_forces(forces) {}
+
+    void structure(const system::LocallyNonlinear& system) override { made = columns_of_motion(system, observed); }
+    void mechanism(system::MechanismEquations& equations) override {
+      made = columns_of_motion(equations, observed, section_forces);
+    }
+  };
+  Maker maker(observed, section_forces);
+  march.show(maker);
+  return std::move(maker.made);
+}
+
+void check_section_forces(const integrate::SystemKind& kind, const model::SectionForcesDescription& wanted,
+                          const std::string& title) {
+  struct Check final : integrate::KindVisitor {
+    const model::SectionForcesDescription& wanted;
+    const std::string& title;
+
+    Check(const model::SectionForcesDescription& forces, const std::string& of) : wanted(forces), title(of) {}
+
+    void structure(const system::LocallyNonlinear&) override {
+      if (wanted.is_wanted())
+        throw InvalidInput(wanted.where, title +
+                                             "section_forces are kept of geometrically exact beams, in mechanisms; "
+                                             "leave it out");
+    }
+    void mechanism(const system::Mechanism& mechanism) override { (void)BeamSectionForces(mechanism, wanted, title); }
+  };
+  Check check(wanted, title);
+  kind.show(check);
 }
 
 }  // namespace rubato::results

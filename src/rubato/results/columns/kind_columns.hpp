@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/integrate/kinds/system_kind.hpp>
+#include <rubato/integrate/march.hpp>
 #include <rubato/results/columns/observed_columns.hpp>
 
 #include <memory>
@@ -22,5 +23,15 @@ struct OwnedColumns {
 /// @param title  of the analysis, for the error
 OwnedColumns columns_of_equilibrium(const integrate::SystemKind& kind, const std::vector<Observed>& observed,
                                     const model::SectionForcesDescription& section_forces, const std::string& title);
+
+/// What a march shows: columns_of_motion() of its system.
+/// @param march  lent to the columns
+ColumnGroups columns_of_motion(integrate::March& march, const std::vector<Observed>& observed,
+                               const model::SectionForcesDescription& section_forces);
+
+/// Refuses section forces of what has none, and of a beam that is not there. Throws InvalidInput at its place.
+/// @param title  of the analysis, for the error
+void check_section_forces(const integrate::SystemKind& kind, const model::SectionForcesDescription& wanted,
+                          const std::string& title);
 
 }  // namespace rubato::results

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 /// Throws InvalidInput for rows that do not reach from 0 to the end of a run, where nothing is said of what is beyond.
 /// @param source    the file; empty: it has no name
@@ -18,4 +18,4 @@ void require_rows_to_reach(const std::vector<double>& times, const std::string& 
 /// @param what  "the displacement"
 void refuse_jump(const std::string& what, const numerics::Formula& motion, double end, const Location& where);
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate

@@ -1,9 +1,9 @@
-#include <rubato/analysis/load_checks.hpp>
+#include <rubato/integrate/kinds/load_checks.hpp>
 #include <rubato/numerics/formula_jump.hpp>
 
 #include <fmt/format.h>
 
-namespace rubato::analysis {
+namespace rubato::integrate {
 
 void require_rows_to_reach(const std::vector<double>& times, const std::string& source, double end,
                            const std::string& remedies, const Location& where) {
@@ -21,4 +21,4 @@ void refuse_jump(const std::string& what, const numerics::Formula& motion, doubl
                                           what, motion.text(), *jump));
 }
 
-}  // namespace rubato::analysis
+}  // namespace rubato::integrate
