@@ -1,4 +1,5 @@
 #include <rubato/analysis/method_study.hpp>
+#include <rubato/integrate/kinds/structure_kind.hpp>
 
 #include "support/memory_sink.hpp"
 #include "support/models.hpp"
@@ -36,7 +37,8 @@ Recorded run(const system::LocallyNonlinear& system, const model::MethodStudyDes
   Recorded result;
   const std::atomic<bool> stop{stopped};
   RunContext context{result.sink, result.progress, stop};
-  result.report = run_method_study("study", study, system, {}, context);
+  const integrate::StructureKind kind(system);
+  result.report = run_method_study("study", plan_method_study("study", {}, study, kind, {}), kind, context);
   return result;
 }
 
@@ -283,7 +285,7 @@ TEST(MethodStudy, WritesNothingInfiniteWhereNothingMoves) {
 
 std::string refusal(const system::LocallyNonlinear& system, const model::MethodStudyDescription& study) {
   try {
-    check_method_study("study", {}, study, system, {});
+    (void)plan_method_study("study", {}, study, integrate::StructureKind(system), {});
   } catch (const InvalidInput& fault) {
     return fault.message();
   }
@@ -343,7 +345,8 @@ TEST(MethodStudy, RefusesALoadWithoutAClosedForm) {
 
 TEST(MethodStudy, RefusesAModelWithSliders) {
   try {
-    check_method_study("study", {"study.toml", 9, 1}, study_of(0.01, 50.0), testing::single_mass(0.15), {});
+    const auto system = testing::single_mass(0.15);
+    (void)plan_method_study("study", {"study.toml", 9, 1}, study_of(0.01, 50.0), integrate::StructureKind(system), {});
     FAIL() << "accepted";
   } catch (const InvalidInput& fault) {
     EXPECT_STREQ(fault.what(),

@@ -1,4 +1,5 @@
 #include <rubato/analysis/as_printed.hpp>
+#include <rubato/analysis/method_study_plan.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/driver.hpp>
@@ -13,27 +14,25 @@ namespace {
 
 constexpr long steps = 30000;
 
-struct Oscillator {
-  double m, c, k, amplitude, omega, phase;
+using Oscillator = integrate::HarmonicOscillator;
 
-  double load(double t) const { return amplitude * std::cos(omega * t + phase); }
-  double acceleration(double t, double x, double v) const { return (load(t) - c * v - k * x) / m; }
-};
+double load(const Oscillator& o, double t) { return o.amplitude * std::cos(o.angular_frequency * t + o.phase); }
 
 /// The closed-form response from rest.
 class Response {
  public:
   explicit Response(const Oscillator& o) : o_(o) {
     const std::complex<double> i(0.0, 1.0);
-    steady_ = o.amplitude * std::exp(i * o.phase) / (o.k - o.m * o.omega * o.omega + i * o.c * o.omega);
-    decay_ = 0.5 * o.c / o.m;
-    turn_ = std::sqrt(o.k / o.m - decay_ * decay_);
+    steady_ = o.amplitude * std::exp(i * o.phase) /
+              (o.stiffness - o.mass * o.angular_frequency * o.angular_frequency + i * o.damping * o.angular_frequency);
+    decay_ = 0.5 * o.damping / o.mass;
+    turn_ = std::sqrt(o.stiffness / o.mass - decay_ * decay_);
     a_ = -steady_.real();
-    b_ = (o.omega * steady_.imag() + decay_ * a_) / turn_;
+    b_ = (o.angular_frequency * steady_.imag() + decay_ * a_) / turn_;
   }
   double operator()(double t) const {
     return std::exp(-decay_ * t) * (a_ * std::cos(turn_ * t) + b_ * std::sin(turn_ * t)) +
-           steady_.real() * std::cos(o_.omega * t) - steady_.imag() * std::sin(o_.omega * t);
+           steady_.real() * std::cos(o_.angular_frequency * t) - steady_.imag() * std::sin(o_.angular_frequency * t);
   }
 
  private:
@@ -42,18 +41,12 @@ class Response {
   double decay_, turn_, a_, b_;
 };
 
-Oscillator oscillator_of(const system::LocallyNonlinear& system) {
-  const auto& terms = system.loads().terms();
-  const auto* harmonic = terms.size() == 1 ? std::get_if<model::HarmonicLaw>(&terms.front().law) : nullptr;
-  const bool from_rest = system.size() == 1 && system.start().q[0] == 0.0 && system.start().v[0] == 0.0;
-  if (!from_rest || system.slider_count() > 0 || !harmonic)
-    throw InvalidInput("as_printed is for one coordinate from rest under one harmonic load, without sliders");
-  double weight = 0.0;
-  for (const double w : terms.front().weights) weight += w;
-  const Oscillator o{system.mass().coeff(0, 0),    system.damping().coeff(0, 0), system.stiffness().coeff(0, 0),
-                     weight * harmonic->amplitude, harmonic->angular_frequency,  harmonic->phase};
-  if (!(o.c * o.c < 4.0 * o.k * o.m)) throw InvalidInput("as_printed is for an underdamped coordinate");
-  return o;
+Oscillator oscillator_of(const integrate::SystemKind& kind) {
+  const auto o = kind.oscillator();
+  if (!o) throw InvalidInput("as_printed is for one coordinate from rest under one harmonic load, without sliders");
+  if (!(o->damping * o->damping < 4.0 * o->stiffness * o->mass))
+    throw InvalidInput("as_printed is for an underdamped coordinate");
+  return *o;
 }
 
 /// Collects E_j of one run.
@@ -81,7 +74,9 @@ class Errors {
 
 using Pair = std::array<double, 2>;
 
-Pair slope(const Oscillator& o, double load, const Pair& y) { return {y[1], (load - o.c * y[1] - o.k * y[0]) / o.m}; }
+Pair slope(const Oscillator& o, double force, const Pair& y) {
+  return {y[1], (force - o.damping * y[1] - o.stiffness * y[0]) / o.mass};
+}
 Pair along(const Pair& y, double h, const Pair& k) { return {y[0] + h * k[0], y[1] + h * k[1]}; }
 
 Errors march(const Response& response, double h, const std::function<Pair(long, const Pair&)>& step) {
@@ -96,12 +91,13 @@ Errors march(const Response& response, double h, const std::function<Pair(long, 
 
 // The load half a step before t_j where half a step after it was meant.
 double half_step_load(const Oscillator& o, long j, double h) {
-  return o.load(j == 0 ? 0.0 : (static_cast<double>(j) - 0.5) * h);
+  return load(o, j == 0 ? 0.0 : (static_cast<double>(j) - 0.5) * h);
 }
 
 PrintedRow euler(const Oscillator& o, const Response& response, double h) {
-  const Errors errors = march(
-      response, h, [&](long j, const Pair& y) { return along(y, h, slope(o, o.load(static_cast<double>(j) * h), y)); });
+  const Errors errors = march(response, h, [&](long j, const Pair& y) {
+    return along(y, h, slope(o, load(o, static_cast<double>(j) * h), y));
+  });
   return {"Explicit Euler",
           "explicit_euler",
           "first step: the second; last sample missing",
@@ -114,9 +110,9 @@ PrintedRow euler(const Oscillator& o, const Response& response, double h) {
 
 PrintedRow runge_kutta_3(const Oscillator& o, const Response& response, double h) {
   const Errors errors = march(response, h, [&](long j, const Pair& y) {
-    const Pair k1 = slope(o, o.load(static_cast<double>(j) * h), y);
+    const Pair k1 = slope(o, load(o, static_cast<double>(j) * h), y);
     const Pair k2 = slope(o, half_step_load(o, j, h), along(y, 0.5 * h, k1));
-    const Pair k3 = slope(o, o.load(static_cast<double>(j + 1) * h), along(along(y, -h, k1), 2.0 * h, k2));
+    const Pair k3 = slope(o, load(o, static_cast<double>(j + 1) * h), along(along(y, -h, k1), 2.0 * h, k2));
     return along(along(along(y, h / 6.0, k1), 2.0 * h / 3.0, k2), h / 6.0, k3);
   });
   return {
@@ -126,10 +122,10 @@ PrintedRow runge_kutta_3(const Oscillator& o, const Response& response, double h
 PrintedRow runge_kutta_4(const Oscillator& o, const Response& response, double h) {
   const Errors errors = march(response, h, [&](long j, const Pair& y) {
     const double middle = half_step_load(o, j, h);
-    const Pair k1 = slope(o, o.load(static_cast<double>(j) * h), y);
+    const Pair k1 = slope(o, load(o, static_cast<double>(j) * h), y);
     const Pair k2 = slope(o, middle, along(y, 0.5 * h, k1));
     const Pair k3 = slope(o, middle, along(y, 0.5 * h, k2));
-    const Pair k4 = slope(o, o.load(static_cast<double>(j + 1) * h), along(y, h, k3));
+    const Pair k4 = slope(o, load(o, static_cast<double>(j + 1) * h), along(y, h, k3));
     return along(along(along(along(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
   });
   return {
@@ -148,19 +144,19 @@ class ErrorObserver final : public integrate::Observer {
   Errors& errors_;
 };
 
-Errors errors_of(const system::LocallyNonlinear& system, const Response& response, double h,
+Errors errors_of(const integrate::SystemKind& kind, const Response& response, double h,
                  const integrate::Method& method) {
   Errors errors(response, h);
   ErrorObserver observer(errors);
-  const auto stepper = integrate::make_stepper(method, system);
-  system::State state = integrate::consistent_start(system, system.start());
-  integrate::march(*stepper, state, h, static_cast<double>(steps) * h, &observer);
+  const double end = static_cast<double>(steps) * h;
+  const integrate::MarchPlan plan = march_plan_of(method, kind, h, end);
+  (void)kind.marches().march(plan)->go_to(end, &observer, nullptr);
   return errors;
 }
 
-PrintedRow implicit_row(const system::LocallyNonlinear& system, const Response& response, double h, PrintedRow row,
+PrintedRow implicit_row(const integrate::SystemKind& kind, const Response& response, double h, PrintedRow row,
                         const integrate::Method& method) {
-  const Errors errors = errors_of(system, response, h, method);
+  const Errors errors = errors_of(kind, response, h, method);
   row.in_percent = true;
   row.first_step_error = 100.0 * errors.first();
   row.indicator = 100.0 * errors.indicator();
@@ -169,8 +165,8 @@ PrintedRow implicit_row(const system::LocallyNonlinear& system, const Response& 
 
 }  // namespace
 
-std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system, double step) {
-  const Oscillator o = oscillator_of(system);
+std::vector<PrintedRow> tables_as_printed(const integrate::SystemKind& kind, double step) {
+  const Oscillator o = oscillator_of(kind);
   const Response response(o);
   std::vector<PrintedRow> rows{euler(o, response, step), runge_kutta_3(o, response, step),
                                runge_kutta_4(o, response, step)};
@@ -190,12 +186,12 @@ std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system
       {"Backward difference", "backward_difference", "beta = 2, the 2 beta of the method", 2.0, 1.5},
       {"Damped Newmark", "damped_newmark", "", 0.3025, 0.6}};
   for (const Newmark& n : table)
-    rows.push_back(implicit_row(system, response, step, {n.title, n.method, n.convention, true},
+    rows.push_back(implicit_row(kind, response, step, {n.title, n.method, n.convention, true},
                                 {n.title, integrate::GeneralizedAlpha{0.0, 0.0, n.beta, n.gamma}}));
-  rows.push_back(implicit_row(system, response, step, {"Wilson-theta", "wilson_theta", "", true},
+  rows.push_back(implicit_row(kind, response, step, {"Wilson-theta", "wilson_theta", "", true},
                               {"Wilson-theta", integrate::WilsonTheta{1.4}}));
   for (PrintedRow& row : rows) {
-    const Errors errors = errors_of(system, response, step, integrate::make_method(row.method));
+    const Errors errors = errors_of(kind, response, step, integrate::make_method(row.method));
     const double unit = row.in_percent ? 100.0 : 1.0;
     row.correct_first_step_error = unit * errors.first();
     row.correct_indicator = unit * errors.indicator();
@@ -203,6 +199,6 @@ std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system
   return rows;
 }
 
-void require_model_as_printed(const system::LocallyNonlinear& system) { (void)oscillator_of(system); }
+void require_model_as_printed(const integrate::SystemKind& kind) { (void)oscillator_of(kind); }
 
 }  // namespace rubato::analysis

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/system/locally_nonlinear.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 
 #include <string>
 #include <vector>
@@ -29,9 +29,9 @@ struct PrintedRow {
 /// Beside them: the same two measures of the method that the row is named after.
 ///
 /// Throws InvalidInput unless the system is one underdamped coordinate from rest under one harmonic load.
-std::vector<PrintedRow> tables_as_printed(const system::LocallyNonlinear& system, double step);
+std::vector<PrintedRow> tables_as_printed(const integrate::SystemKind& kind, double step);
 
 /// Throws what tables_as_printed throws, and computes nothing.
-void require_model_as_printed(const system::LocallyNonlinear& system);
+void require_model_as_printed(const integrate::SystemKind& kind);
 
 }  // namespace rubato::analysis

@@ -22,11 +22,9 @@ using integrate::Method;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-bool march(const Method& method, const system::LocallyNonlinear& system, double step, double end,
-           Comparison& comparison) {
-  const auto stepper = integrate::make_stepper(method, system);
-  system::State state = integrate::consistent_start(system, system.start());
-  return integrate::march(*stepper, state, step, end, &comparison).end == integrate::MarchEnd::reached;
+bool march(const Method& method, const integrate::SystemKind& kind, double step, double end, Comparison& comparison) {
+  const integrate::MarchPlan plan = march_plan_of(method, kind, step, end);
+  return kind.marches().march(plan)->go_to(end, &comparison, nullptr).march.end == integrate::MarchEnd::reached;
 }
 
 results::Block scalar(const std::string& variable, const std::string& unit, const std::string& description) {
@@ -36,10 +34,10 @@ results::Block scalar(const std::string& variable, const std::string& unit, cons
 /// Writes the tables one after another; each returns false if it was interrupted.
 class MethodStudy {
  public:
-  MethodStudy(const std::string& name, const MethodStudyPlan& plan, const system::LocallyNonlinear& system,
+  MethodStudy(const std::string& name, const MethodStudyPlan& plan, const integrate::SystemKind& kind,
               RunContext& context)
-      : name_(name), plan_(plan), system_(system), context_(context) {
-    ExactResponse response = exact_response(plan, system, 0.25 * plan.step);
+      : name_(name), plan_(plan), kind_(kind), context_(context) {
+    ExactResponse response = exact_response(plan, kind, 0.25 * plan.step);
     exact_ = std::move(response.values);
     size_ = response.largest > 0.0 ? response.largest : 1.0;
     const double methods = static_cast<double>(plan.methods.size());
@@ -68,7 +66,7 @@ class MethodStudy {
       double first = 0.0, mean = 0.0;
       for (int level = 0; level < 3; ++level) {
         Comparison comparison(plan_, exact_, 4 >> level, context_.stop);
-        if (!march(method_i, system_, plan_.step / (1 << level), plan_.duration, comparison)) return false;
+        if (!march(method_i, kind_, plan_.step / (1 << level), plan_.duration, comparison)) return false;
         largest[level] = comparison.largest() / size_;
         if (level == 0) first = comparison.first(), mean = comparison.mean() / size_;
         advance(plan_.duration / plan_.step * (1 << level));
@@ -94,7 +92,7 @@ class MethodStudy {
     for (const Method& method : plan_.methods) {
       Comparison comparison(plan_, exact_, 4, context_.stop);
       comparison.keep_values = true;
-      if (!march(method, system_, plan_.step, end, comparison)) return false;
+      if (!march(method, kind_, plan_.step, end, comparison)) return false;
       labels.push_back(method.name);
       columns.push_back(std::move(comparison.values));
     }
@@ -107,14 +105,14 @@ class MethodStudy {
   /// What lies beyond the limit: explicit Euler at a tenth more than its largest stable step.
   bool unstable() {
     const Method euler = integrate::make_method("explicit_euler");
-    const double limit = integrate::stability_of(euler, system_).step;
+    const double limit = kind_.marches().stability_of(euler).step;
     if (!(limit > 0.0) || std::isinf(limit)) return true;
     const double step = 1.1 * limit;
-    const auto exact = exact_response(plan_, system_, step).values;
+    const auto exact = exact_response(plan_, kind_, step).values;
     Comparison comparison(plan_, exact, 1, context_.stop);
     comparison.keep_values = true;
     const double end = std::min(60.0 * step, plan_.duration);
-    (void)march(euler, system_, step, end, comparison);
+    (void)march(euler, kind_, step, end, comparison);
     write_displacements("unstable",
                         {{"step", fmt::format("{} s", step)}, {"stability_limit", fmt::format("{} s", limit)}}, step,
                         {euler.name}, exact, {comparison.values});
@@ -131,17 +129,17 @@ class MethodStudy {
            "method", plan_.names()}},
          {}});
     std::vector<double> limits;
-    for (const Method& method : plan_.methods) limits.push_back(integrate::stability_of(method, system_).step);
+    for (const Method& method : plan_.methods) limits.push_back(kind_.marches().stability_of(method).step);
     for (const double h : plan_.ladder) {
       // Fine runs are compared at a thousand times or more, not at every step.
       const long count = integrate::count_steps(plan_.duration, h).full;
       const long thinned = std::max(1L, count / 2000);
-      const auto exact = exact_response(plan_, system_, h * static_cast<double>(thinned)).values;
+      const auto exact = exact_response(plan_, kind_, h * static_cast<double>(thinned)).values;
       std::vector<double> row{h};
       for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
         Comparison comparison(plan_, exact, -thinned, context_.stop);
         const bool is_stable = h <= limits[i];
-        if (is_stable && !march(plan_.methods[i], system_, h, static_cast<double>(count) * h, comparison)) return false;
+        if (is_stable && !march(plan_.methods[i], kind_, h, static_cast<double>(count) * h, comparison)) return false;
         // No error at all is below what a logarithmic axis shows.
         row.push_back(is_stable && comparison.largest() > 0.0 ? comparison.largest() / size_ : missing);
         advance(plan_.duration / h);
@@ -179,7 +177,7 @@ class MethodStudy {
   }
 
   void as_printed() {
-    const auto table = tables_as_printed(system_, plan_.step);
+    const auto table = tables_as_printed(kind_, plan_.step);
     results::Block method = scalar("row", "", "row of the thesis's tables 2.2 to 2.4"),
                    convention = scalar("convention", "", "how the printed figure arises"),
                    unit = scalar("printed_in", "", "unit of the printed figures");
@@ -249,7 +247,7 @@ class MethodStudy {
 
   const std::string& name_;
   const MethodStudyPlan& plan_;
-  const system::LocallyNonlinear& system_;
+  const integrate::SystemKind& kind_;
   RunContext& context_;
   std::vector<double> exact_;  ///< at the multiples of a quarter of the step
   double size_ = 0.0, total_ = 0.0, done_ = 0.0;
@@ -257,20 +255,13 @@ class MethodStudy {
 
 }  // namespace
 
-void check_method_study(const std::string& name, const Location& where, const model::MethodStudyDescription& study,
-                        const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
-  (void)plan_method_study(name, where, study, system, parameters);
-}
-
-RunReport run_method_study(const std::string& name, const model::MethodStudyDescription& study,
-                           const system::LocallyNonlinear& system, const numerics::Parameters& parameters,
+RunReport run_method_study(const std::string& name, const MethodStudyPlan& plan, const integrate::SystemKind& kind,
                            RunContext& context) {
-  const MethodStudyPlan plan = plan_method_study(name, {}, study, system, parameters);
-  MethodStudy tables(name, plan, system, context);
+  MethodStudy tables(name, plan, kind, context);
   context.progress.begin(name, tables.total(), "steps");
   const bool finished =
       tables.errors() && tables.responses() && tables.unstable() && tables.ladder() && tables.stability();
-  if (finished && study.as_printed) tables.as_printed();
+  if (finished && plan.as_printed) tables.as_printed();
   context.progress.end();
   RunReport report;
   if (!finished) {

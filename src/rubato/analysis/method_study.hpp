@@ -1,8 +1,8 @@
 #pragma once
 
+#include <rubato/analysis/method_study_plan.hpp>
 #include <rubato/analysis/run_context.hpp>
-#include <rubato/model/description.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 
 namespace rubato::analysis {
 
@@ -18,12 +18,7 @@ namespace rubato::analysis {
 ///   as_printed  Tables 2.2 to 2.4 of the thesis, on request (see tables_as_printed)
 ///
 /// Methods beyond their stability limit at the given step are left out where none were listed.
-RunReport run_method_study(const std::string& name, const model::MethodStudyDescription& study,
-                           const system::LocallyNonlinear& system, const numerics::Parameters& parameters,
+RunReport run_method_study(const std::string& name, const MethodStudyPlan& plan, const integrate::SystemKind& kind,
                            RunContext& context);
-
-/// Throws InvalidInput for a model with sliders or loads that are not harmonic, and for values out of their range.
-void check_method_study(const std::string& name, const Location& where, const model::MethodStudyDescription& study,
-                        const system::LocallyNonlinear& system, const numerics::Parameters& parameters);
 
 }  // namespace rubato::analysis

@@ -1,5 +1,5 @@
 #include <rubato/analysis/method_study_comparison.hpp>
-#include <rubato/integrate/exact/exact_flow.hpp>
+#include <rubato/integrate/catalogue.hpp>
 #include <rubato/integrate/exact/first_exit.hpp>
 
 #include <algorithm>
@@ -41,15 +41,14 @@ class Sampler final : public integrate::ExactVisitor {
 
 }  // namespace
 
-ExactResponse exact_response(const MethodStudyPlan& plan, const system::LocallyNonlinear& system, double step) {
+ExactResponse exact_response(const MethodStudyPlan& plan, const integrate::SystemKind& kind, double step) {
+  const integrate::MarchPlan exact = march_plan_of(integrate::make_method("exact"), kind, 0.0, plan.duration);
   const integrate::StepCount count = integrate::count_steps(plan.duration, step);
   std::vector<double> times;
   for (long i = 0; i <= count.full; ++i) times.push_back(std::min(static_cast<double>(i) * step, plan.duration));
   ExactResponse response;
   Sampler sampler(plan.observed, response);
-  integrate::ExactFlow flow(system);
-  system::State state = system.start();
-  flow.advance(state, plan.duration, times, sampler);
+  (void)kind.marches().flow(exact)->go_to(plan.duration, times, sampler, false);
   return response;
 }
 

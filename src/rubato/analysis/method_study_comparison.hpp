@@ -18,7 +18,7 @@ struct ExactResponse {
 /// The exact displacement at the multiples of a step, by the event-driven flow (Taylor pieces, exact to round-off
 /// whatever the roots of the structure: at resonance, without damping, overdamped). `largest` is an extremum of a
 /// piece, however long the step is beside the periods of the structure.
-ExactResponse exact_response(const MethodStudyPlan& plan, const system::LocallyNonlinear& system, double step);
+ExactResponse exact_response(const MethodStudyPlan& plan, const integrate::SystemKind& kind, double step);
 
 /// Compares every step of a march with the exact displacement.
 class Comparison final : public integrate::Observer {

@@ -2,9 +2,6 @@
 #include <rubato/analysis/law_routes.hpp>
 #include <rubato/analysis/method_study_plan.hpp>
 #include <rubato/integrate/catalogue.hpp>
-#include <rubato/integrate/exact/exact_flow.hpp>
-#include <rubato/integrate/kinds/structure_kind.hpp>
-#include <rubato/integrate/stability.hpp>
 
 #include <fmt/format.h>
 
@@ -41,13 +38,13 @@ std::string label_of(const model::MethodDescription& description, const numerics
 }
 
 void take_listed_methods(MethodStudyPlan& plan, const std::string& title, const model::MethodStudyDescription& study,
-                         const system::LocallyNonlinear& system, const numerics::Parameters& parameters) {
+                         const integrate::SystemKind& kind, const numerics::Parameters& parameters) {
   for (const auto& description : study.methods) {
     Method method = method_of(description, parameters);
     if (std::holds_alternative<integrate::Exact>(method.formula))
       throw InvalidInput(description.where,
                          title + "the method exact takes no step; it is what the others are compared with");
-    const double limit = integrate::stability_of(method, system).step;
+    const double limit = kind.marches().stability_of(method).step;
     if (limit == 0.0)
       throw InvalidInput(description.where, fmt::format("{}{} has no stable step on this model", title, method.name));
     if (plan.step > limit)
@@ -65,13 +62,13 @@ void take_listed_methods(MethodStudyPlan& plan, const std::string& title, const 
   }
 }
 
-void take_all_methods(MethodStudyPlan& plan, const system::LocallyNonlinear& system) {
+void take_all_methods(MethodStudyPlan& plan, const integrate::SystemKind& kind) {
   for (const auto& info : integrate::catalogue()) {
     const bool needs_values = std::any_of(info.parameters.begin(), info.parameters.end(),
                                           [](const auto& parameter) { return std::isnan(parameter.default_value); });
-    if (needs_values || info.name == "exact" || (info.name == "exponential" && system.size() > 500)) continue;
+    if (needs_values || info.name == "exact" || (info.name == "exponential" && kind.system().size() > 500)) continue;
     Method method = integrate::make_method(info.name);
-    if (plan.step > integrate::stability_of(method, system).step) {
+    if (plan.step > kind.marches().stability_of(method).step) {
       plan.left_out.push_back(info.name);
       continue;
     }
@@ -80,23 +77,41 @@ void take_all_methods(MethodStudyPlan& plan, const system::LocallyNonlinear& sys
   }
 }
 
+bool has_harmonic_loads(const integrate::SystemKind& kind) {
+  bool are_harmonic = true;
+  kind.for_each_time_law([&](const model::TimeLaw& law) {
+    are_harmonic = are_harmonic && std::holds_alternative<model::HarmonicLaw>(law);
+  });
+  return are_harmonic;
+}
+
 }  // namespace
 
+integrate::MarchPlan march_plan_of(const integrate::Method& method, const integrate::SystemKind& kind, double step,
+                                   double duration) {
+  integrate::MarchPlan plan;
+  plan.method = method;
+  plan.start = kind.start();
+  plan.step = step;
+  plan.duration = duration;
+  return plan;
+}
+
 MethodStudyPlan plan_method_study(const std::string& name, const Location& where,
-                                  const model::MethodStudyDescription& study, const system::LocallyNonlinear& system,
+                                  const model::MethodStudyDescription& study, const integrate::SystemKind& kind,
                                   const numerics::Parameters& parameters) {
   const std::string title = "analysis \"" + name + "\": ";
-  if (const auto reason = refusal(Route::method_study, integrate::StructureKind(system)))
-    throw InvalidInput(where, title + *reason);
-  if (!system.loads().are_harmonic())
+  if (const auto reason = refusal(Route::method_study, kind)) throw InvalidInput(where, title + *reason);
+  if (!has_harmonic_loads(kind))
     throw InvalidInput(where, title + "a method study needs harmonic loads, whose response has a closed form");
   try {
-    const integrate::ExactFlow flow(system);
-    if (study.as_printed) require_model_as_printed(system);
+    (void)kind.marches().flow(march_plan_of(integrate::make_method("exact"), kind, 0.0, 0.0));
+    if (study.as_printed) require_model_as_printed(kind);
   } catch (const InvalidInput& fault) {
     throw InvalidInput(where, title + fault.message());
   }
   MethodStudyPlan plan;
+  plan.as_printed = study.as_printed;
   plan.step = positive(study.step, parameters, title + "step");
   plan.duration = positive(study.duration, parameters, title + "duration");
   const double count = plan.duration / plan.step;
@@ -105,12 +120,12 @@ MethodStudyPlan plan_method_study(const std::string& name, const Location& where
   if (std::abs(count - std::round(count)) > 1e-9 * count)
     throw InvalidInput(study.step.where, fmt::format("{}the duration {} s must be a multiple of the step {} s", title,
                                                      plan.duration, plan.step));
-  plan.observed = study.observe ? observed_of(*study.observe, {system, system.supports()})
-                                : Observed{system.coordinates().front(), 0, ground, system.is_rotation(0)};
+  plan.observed = study.observe ? observed_of(*study.observe, {kind.system(), kind.supports()})
+                                : every_coordinate(kind.system()).front();
   if (study.methods.empty())
-    take_all_methods(plan, system);
+    take_all_methods(plan, kind);
   else
-    take_listed_methods(plan, title, study, system, parameters);
+    take_listed_methods(plan, title, study, kind, parameters);
   for (const auto& quantity : study.ladder) {
     const double h = positive(quantity, parameters, title + "ladder");
     if (h > plan.duration || plan.duration / h > 1e7)

@@ -2,9 +2,9 @@
 
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/core/error.hpp>
+#include <rubato/integrate/kinds/system_kind.hpp>
 #include <rubato/integrate/method.hpp>
 #include <rubato/model/description.hpp>
-#include <rubato/system/locally_nonlinear.hpp>
 
 #include <string>
 #include <vector>
@@ -18,6 +18,7 @@ struct MethodStudyPlan {
   double step = 0.0, duration = 0.0;  ///< [s]
   std::vector<double> ladder;         ///< falling [s]
   Observed observed;
+  bool as_printed = false;            ///< the thesis's tables too
   std::vector<std::string> left_out;  ///< unstable at the step, where no methods were listed
 
   std::vector<std::string> names() const {
@@ -27,10 +28,14 @@ struct MethodStudyPlan {
   }
 };
 
+/// What a march with equal steps from the start of a system needs; of the method `exact` a step of 0.
+integrate::MarchPlan march_plan_of(const integrate::Method& method, const integrate::SystemKind& kind, double step,
+                                   double duration);
+
 /// Throws InvalidInput for a model with sliders or loads that are not harmonic, for values out of their range, and for
 /// a listed method that cannot take part: `exact`, or one beyond its stability limit at the step.
 MethodStudyPlan plan_method_study(const std::string& name, const Location& where,
-                                  const model::MethodStudyDescription& study, const system::LocallyNonlinear& system,
+                                  const model::MethodStudyDescription& study, const integrate::SystemKind& kind,
                                   const numerics::Parameters& parameters);
 
 }  // namespace rubato::analysis

@@ -129,11 +129,12 @@ struct Plan {
 
   PlannedAnalysis operator()(const model::MethodStudyDescription& study) const {
     require_structure();
-    check_method_study(analysis.name, analysis.where, study, input.structure(), input.parameters);
+    const auto plan = std::make_shared<const MethodStudyPlan>(
+        plan_method_study(analysis.name, analysis.where, study, input.kind, input.parameters));
     return {{"method study: errors, orders and curves of each method", 1e7},
-            [study, name = analysis.name](const StudyInput& at, RunContext& context) {
+            [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_method_study(name, study, at.structure(), at.parameters, context);
+              return run_method_study(name, *plan, at.kind, context);
             }};
   }
 
