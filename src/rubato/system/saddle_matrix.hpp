@@ -12,9 +12,9 @@ namespace rubato::system {
 ///   [ S   G^T ]
 ///   [ G   -E  ]     S [n x n]: mass M, and with it damping and stiffness;  G [c x n]
 ///
-/// whose E, a share of 1e-10 of what each row of G sees through the diagonal of M, lets constraints repeat each other:
-/// of the multipliers that make the same forces a solution has those of least norm, and iterations lose nothing else by
-/// it. A workspace: nothing is allocated after analyse().
+/// whose E, a share of 1e-10 of what each row of G sees through the diagonal of M, lets constraints repeat each other.
+/// A solution then has the multipliers of least norm, of all that make the same forces; iterations remove what else E
+/// changes. A workspace: nothing is allocated after analyse().
 ///
 /// It is written anew by begin(), what the equations add to values() and add_to_row(), and end().
 class SaddleMatrix {
@@ -65,8 +65,8 @@ class SaddleMatrix {
   /// as the last matrix had them.
   /// @param constraint  g [c]
   double gap_norm(const Vector& constraint) const;
-  /// How many rows are all but redundant: without E less than ten times E is left of their pivots. They repeat other
-  /// rows, or do so in this configuration.
+  /// How many rows are all but redundant, so that E is a tenth or more of their pivots: they repeat other rows, always
+  /// or in this configuration.
   int nearly_redundant_rows() const;
   /// The inverse of an entry of the diagonal of M [1/kg].
   double inverse_mass(Index place) const { return inverse_mass_[static_cast<std::size_t>(place)]; }
