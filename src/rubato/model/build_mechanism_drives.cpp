@@ -157,11 +157,9 @@ void take_force(MechanismAssembly& assembly, const ForceDescription& force) {
   if (is_moment && !force.at.empty())
     throw InvalidInput(force.at_where, part + ": a moment has no point; remove \"at\"");
   // A moment of the plane is the same however its node turns, and coordinates of rotations turn with their node.
-  if (is_moment && (assembly.in_plane() || !stays))
-    mechanism.forces.push_back({coordinate, law});
-  else if (is_moment)
+  if (is_moment && !assembly.in_plane() && stays)
     mechanism.add_fixed_moment(part, node, axis - 3, law);
-  else if (force.follows)
+  else if (!is_moment && force.follows)
     take_following_force(assembly, force, part, node, axis, law);
   else
     mechanism.forces.push_back({coordinate, law});
