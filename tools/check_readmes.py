@@ -1,7 +1,7 @@
 """Fail if a folder with more than a dozen files has no README.md, or if that tells of files that are not there.
 
-Usage: check_readmes.py ROOT. Of the folders that git follows. What stands in backticks in the first column of a table must
-be how the name of a file or folder begins.
+Usage: check_readmes.py ROOT. Of the folders that git follows. What stands in backticks in the first column of a table of
+files or folders must be how the name of one begins.
 """
 import collections
 import pathlib
@@ -27,7 +27,9 @@ for folder, names in sorted(files.items()):
     if count > most and "README.md" not in names:
         faults.append(f"{folder.relative_to(root)}: {count} files and no README.md")
     if count > most and "README.md" in names:
-        for row in re.findall(r"^\| (`.*?) \|", (folder / "README.md").read_text(), re.MULTILINE):
+        text = (folder / "README.md").read_text()
+        rows = "".join(re.findall(r"^\| (?:files?|folder) \|.*\n((?:\|.*\n)*)", text, re.MULTILINE))
+        for row in re.findall(r"^\| (`.*?) \|", rows, re.MULTILINE):
             for said in re.findall(r"`([\w./-]+)[*]?[^`]*`", row):
                 if not said.startswith(("_", "...")) and not list(folder.glob(said.rstrip("/.") + "*")):
                     faults.append(f"{folder.relative_to(root)}/README.md names {said}, which is not there")
