@@ -75,6 +75,17 @@ constexpr Row law{
     refuses(balanced_sweep),    // damper_curve
     refuses(),                  // method_study
 };
+constexpr Row pressed_slider{
+    takes("yes"),            // steps
+    refuses(small_steps),    // exact
+    takes("yes"),            // equilibrium
+    takes("stuck, free"),    // modes
+    refuses(a_march),        // periodic
+    refuses(a_march),        // harmonic_balance
+    takes("yes"),            // time_marching
+    refuses(marched_sweep),  // damper_curve
+    refuses(),               // method_study
+};
 constexpr Row joint_friction{
     takes("yes"),          // steps
     refuses(small_steps),  // exact
@@ -98,7 +109,7 @@ constexpr Row lock{
     refuses(),             // method_study
 };
 // In the order of Element.
-constexpr std::array<Row, element_count> table{slider, stop, law, joint_friction, lock};
+constexpr std::array<Row, element_count> table{slider, stop, law, pressed_slider, joint_friction, lock};
 
 /// As messages call it.
 std::string label_of(const NonlinearPart& part, const std::vector<NonlinearPart>& all) {
@@ -109,6 +120,8 @@ std::string label_of(const NonlinearPart& part, const std::vector<NonlinearPart>
     case Element::stop:
     case Element::law:
       return fmt::format("the {} \"{}\"", part.kind, part.name);
+    case Element::pressed_slider:
+      return fmt::format("the {} \"{}\", whose normal load does not stay the same", part.kind, part.name);
     case Element::joint_friction:
     case Element::lock:
       break;

@@ -7,7 +7,7 @@ namespace rubato::integrate {
 
 ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const system::State& start,
                              StructureTimeline* located)
-    : system_(system), located_(located), parts_(static_cast<std::size_t>(system.first_law()), 0) {
+    : system_(system), located_(located), parts_(static_cast<std::size_t>(system.contact_count()), 0) {
   events_.are_of_contacts = true;
   const Index sliders = system.slider_count();
   constexpr double none = std::numeric_limits<double>::infinity(), least = std::numeric_limits<double>::denorm_min();
@@ -22,11 +22,45 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
     watched_.back().branch = located ? located->branch(i, start) : branch_of(watched_.back(), start);
     if (i >= sliders && watched_.back().branch != 0) note_stop(i, start, true);
   }
+  for (Index j = 0; j < system.law_count(); ++j) {
+    const model::LawBetween& law = system.laws()[static_cast<std::size_t>(j)];
+    if (!(law.law->sticking_stiffness() > 0.0)) continue;
+    const Index i = system.first_law() + j;
+    parts_[static_cast<std::size_t>(i)] = events_.parts.size();
+    events_.parts.push_back(law.name);
+    watched_.push_back({i, 0.0, 0.0, branch_of_law(i, start)});
+  }
   events_.at_start = events_.all.size();
+}
+
+int ContactEvents::branch_of_law(Index contact, const system::State& state) const {
+  const Index law = contact - system_.first_law();
+  return static_cast<int>(system_.laws()[static_cast<std::size_t>(law)].law->contact(
+      system_.law_point(law, state, model::Side::left), state.memory.data() + system_.memory_of(law)));
+}
+
+void ContactEvents::note_law(Watched& one, int now, double t) {
+  const auto is = [](int branch, model::Law::Contact contact) { return branch == static_cast<int>(contact); };
+  using enum model::Law::Contact;
+  const auto slips_at = [&](int branch) { return is(branch, slips_forwards) || is(branch, slips_backwards); };
+  const std::size_t part = parts_[static_cast<std::size_t>(one.contact)];
+  if (is(now, open)) {
+    events_.add({t, part, Change::opens});
+  } else {
+    if (is(one.branch, open)) events_.add({t, part, Change::closes});
+    if (is(now, sticks) || (slips_at(one.branch) && slips_at(now))) events_.add({t, part, Change::sticks});
+    if (slips_at(now)) events_.add({t, part, Change::slips});
+  }
+  one.branch = now;
 }
 
 bool ContactEvents::accepted(const system::State& before, const system::State& after) {
   for (Watched& one : watched_) {
+    if (one.contact >= system_.first_law()) {
+      const int now = branch_of_law(one.contact, after);
+      if (now != one.branch) note_law(one, now, after.t);
+      continue;
+    }
     const int now = located_ ? located_->branch_after(one.contact, before, after) : branch_of(one, after);
     if (now != one.branch) note_change(one, now, after);
   }

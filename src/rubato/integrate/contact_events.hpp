@@ -8,8 +8,8 @@
 
 namespace rubato::integrate {
 
-/// The sliders and stops of a structure that change in a march: sliders that begin to slip and stick, stops that close
-/// and open.
+/// The contacts of a structure that change in a march: sliders that begin to slip and stick, stops that close and open,
+/// and laws of friction that slip, stick, open and close, which are told at the ends of steps.
 ///
 /// What steps end at is told at that time. All else is told at the end of a step, as the law of the step has it: a
 /// slider has slipped in a step if its force is its limit at the end, and a stop is closed if it pushes there. So
@@ -29,23 +29,25 @@ class ContactEvents final : public Observer {
   const Events& events() const { return events_; }
 
  private:
-  /// A slider, or a stop.
+  /// A slider, a stop, or a law that sticks and slips.
   struct Watched {
     Index contact = 0;
     double slips_up = 0.0, slips_down = 0.0;  ///< at these forces or beyond; a stop is closed at the first [N]
-    int branch = 0;                           ///< as StructureTimeline::branch() has it
+    int branch = 0;  ///< as StructureTimeline::branch() has it; of a law as model::Law::Contact has it
   };
   int branch_of(const Watched& one, const system::State& state) const {
     const double force = state.slider_force[one.contact];
     return (force >= one.slips_up ? 1 : 0) - (force <= one.slips_down ? 1 : 0);
   }
+  int branch_of_law(Index contact, const system::State& state) const;
+  void note_law(Watched& one, int now, double t);
   void note_change(Watched& one, int now, const system::State& state);
   void note_stop(Index contact, const system::State& state, bool closes);
 
   const system::LocallyNonlinear& system_;
   StructureTimeline* located_;
   std::vector<Watched> watched_;    // what can change
-  std::vector<std::size_t> parts_;  // place of each slider and stop among the names
+  std::vector<std::size_t> parts_;  // place of each contact among the names
   Events events_;
 };
 

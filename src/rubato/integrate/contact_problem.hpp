@@ -39,6 +39,10 @@ class ContactProblem {
   /// The row of a law: fc = trial - Q fc with Q = k W + c W', trial = f + k (u_free - u) + c (v_free - v) about the
   /// point of which f, k and c are the force and its slopes.
   void set_slopes(Index contact, double k, double c);
+  /// Behind set_slopes(): the force of the law rises by `slope` times the force of another contact, which presses on
+  /// it; that force, times the slope, is no part of its trial. The matrix of the problem is not symmetric then, and
+  /// the pivots may not end: solve() says so.
+  void add_slope(Index contact, Index other, double slope) { scaled_compliance_(contact, other) -= slope; }
   /// Sliders alone.
   void reset(const Matrix& compliance, const std::vector<model::Slider>& sliders);
 

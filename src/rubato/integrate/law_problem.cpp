@@ -28,7 +28,10 @@ struct LawProblem::Iteration : numerics::NewtonProblem {
   bool is_solved(double error) const { return error <= enough; }
   bool factorise() {
     p.linearise();
-    return p.linearised_.solve(p.trial_.data(), from.slider_force.data(), p.next_.data(), p.penetration_.data());
+    if (!p.linearised_.solve(p.trial_.data(), from.slider_force.data(), p.next_.data(), p.penetration_.data()))
+      return false;
+    p.take_known_forces(has_full_steps);
+    return true;
   }
   double correct() {
     p.next_ -= p.force_;
@@ -39,7 +42,7 @@ struct LawProblem::Iteration : numerics::NewtonProblem {
     if (part > 0.0 && part < 1.0) boxes_hold = p.solve_boxes(from, p.trial_force_);
   }
   bool is_lower(double error, double before, double part) const {
-    return error < before * (1.0 - 1e-4 * part) || error <= enough;
+    return has_full_steps || error < before * (1.0 - 1e-4 * part) || error <= enough;
   }
   bool may_be_halved(double) const { return boxes_hold; }
   void accept(double) { p.force_.swap(p.trial_force_); }
@@ -48,6 +51,7 @@ struct LawProblem::Iteration : numerics::NewtonProblem {
   const system::State& from;
   system::State& to;
   bool boxes_hold = true;
+  bool has_full_steps = false;  ///< whether the residual falls or not
 };
 
 LawProblem::LawProblem(const system::LocallyNonlinear& system)
@@ -69,6 +73,14 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
       end_(start_),
       answer_(start_.size()),
       reach_(start_.size()),
+      first_u_(m_),
+      first_v_(m_),
+      whole_u_(m_),
+      whole_v_(m_),
+      known_(m_),
+      slopes_are_bounded_(
+          std::all_of(system.laws().begin(), system.laws().end(),
+                      [](const model::LawBetween& law) { return std::isfinite(law.law->largest_stiffness()); })),
       joined_start_{0} {
   for (Index i = boxes_; i < m_; ++i) {
     const std::vector<model::Share> joined = system.column(i);
@@ -135,10 +147,12 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
     const Index i = boxes_ + static_cast<Index>(j), place = system_.memory_of(static_cast<Index>(j));
     end_[j].u = u_[i];
     end_[j].rate = v_[i];
+    if (system_.has_normals()) press(static_cast<Index>(j), force);
     answer_[j] = system_.laws()[j].law->advance(start_[j], memory_ + place, end_[j], to.memory.data() + place);
     const double round_off =
         epsilon * (std::abs(answer_[j].force) + std::abs(force[i]) + std::abs(answer_[j].by_u) * reach_[j] +
-                   std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])));
+                   std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])) +
+                   std::abs(answer_[j].by_normal * end_[j].normal));
     const double error = std::abs(answer_[j].force - force[i]);
     if (!std::isfinite(error)) {
       worst_ = i;
@@ -153,12 +167,40 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
   return largest;
 }
 
+/// What presses on a law at the end of the step; an open stop presses with less than nothing.
+void LawProblem::press(Index law, const Vector& force) {
+  const Index by = system_.normal_contact(law);
+  if (by < 0) return;  // known from the start
+  double& normal = end_[static_cast<std::size_t>(law)].normal;
+  normal = force[by];
+  if (by >= boxes_ || normal > 0.0) return;
+  const model::Stop& stop = system_.stops()[static_cast<std::size_t>(by - system_.slider_count())];
+  normal = std::min(0.0, stop.stiffness * (u_[by] - stop.gap));
+}
+
 void LawProblem::linearise() {
   for (std::size_t j = 0; j < answer_.size(); ++j) {
     const Index i = boxes_ + static_cast<Index>(j);
     const model::LawAnswer& a = answer_[j];
     linearised_.set_slopes(i, a.by_u, a.by_rate);
     trial_[i] = a.force + a.by_u * (u_free_[i] - u_[i]) + a.by_rate * (v_free_[i] - v_[i]);
+    if (a.by_normal == 0.0) continue;
+    const Index by = system_.normal_contact(static_cast<Index>(j));
+    if (by < 0) continue;
+    linearised_.add_slope(i, by, a.by_normal);
+    trial_[i] -= a.by_normal * end_[j].normal;
+  }
+}
+
+/// Forces that no other changes, of laws that slip or are open, without the round-off of the equations of others:
+/// beside it the force of an open law would never be zero.
+void LawProblem::take_known_forces(bool of_all_laws) {
+  for (std::size_t j = 0; j < answer_.size(); ++j) {
+    const model::LawAnswer& a = answer_[j];
+    const bool is_known =
+        a.by_u == 0.0 && a.by_rate == 0.0 && (a.by_normal == 0.0 || system_.normal_contact(static_cast<Index>(j)) < 0);
+    const Index i = boxes_ + static_cast<Index>(j);
+    if (is_known && (of_all_laws || system_.laws()[j].law->takes_normal())) next_[i] = trial_[i];
   }
 }
 
@@ -174,6 +216,12 @@ void LawProblem::start(const system::State& from, const system::State& to) {
     }
     end_[j].t = to.t;
     end_[j].side = model::Side::left;
+    if (system_.has_normals()) {
+      const Index law = static_cast<Index>(j);
+      start_[j].normal = system_.normal_force(law, from, from.slider_force, model::Side::right);
+      if (system_.normal_contact(law) < 0)
+        end_[j].normal = system_.normal_force(law, to, from.slider_force, model::Side::left);
+    }
     reach_[j] = std::max(std::abs(start_[j].u), std::abs(u_free_[i]));
     for (std::size_t s = joined_start_[j]; s < joined_start_[j + 1]; ++s)
       reach_[j] = std::max(reach_[j], std::abs(joined_[s].weight * from.q[joined_[s].coordinate]));
@@ -181,21 +229,83 @@ void LawProblem::start(const system::State& from, const system::State& to) {
   force_ = from.slider_force;
 }
 
-StepReport LawProblem::solve(const system::State& from, system::State& to) {
-  constexpr double good = 1e6;  // a correction that no longer helps leaves at most 1e-10 of the forces
-  start(from, to);
-  if (!solve_boxes(from, force_)) return failure(StepOutcome::not_converged);
+/// Newton's method from the forces at hand, with memory and forces of the contacts as it leaves them.
+/// @param good  the residual up to which a solution is one that no correction makes better
+numerics::NewtonOutcome LawProblem::iterate(const system::State& from, system::State& to, bool has_full_steps,
+                                            double good) {
+  if (!solve_boxes(from, force_)) return numerics::NewtonOutcome::singular;
   trial_force_ = force_;
   Iteration iteration(*this, from, to);
+  iteration.has_full_steps = has_full_steps;
   const numerics::NewtonReport report = numerics::newton(iteration, Iteration::rules());
-  if (report.outcome == numerics::NewtonOutcome::diverged && iteration.boxes_hold && report.residual <= good)
-    evaluate(force_, to);  // as good as it gets
-  else if (!report.has_converged())
-    return failure(report.outcome == numerics::NewtonOutcome::not_finite ? StepOutcome::not_finite
-                                                                         : StepOutcome::not_converged);
+  if (!(report.outcome == numerics::NewtonOutcome::diverged && iteration.boxes_hold && report.residual <= good))
+    return report.outcome;
+  evaluate(force_, to);  // as good as it gets
+  return numerics::NewtonOutcome::converged;
+}
+
+StepReport LawProblem::solve(const system::State& from, system::State& to) {
+  constexpr double fair = 1e6;    // a correction that no longer helps leaves at most 1e-10 of the forces
+  constexpr double better = 1e3;  // beside a kink it may be a piece of the law that is not that of the solution
+  start(from, to);
+  numerics::NewtonOutcome outcome = iterate(from, to, false, system_.has_normals() ? better : fair);
+  if (outcome != numerics::NewtonOutcome::converged) {
+    const Index worst = worst_;
+    bool is_solved = slopes_are_bounded_ && solve_by_parts(from, to);
+    if (!is_solved && system_.has_normals()) {
+      force_ = from.slider_force;
+      outcome = iterate(from, to, false, fair);
+      is_solved = outcome == numerics::NewtonOutcome::converged;
+    }
+    if (!is_solved) {
+      worst_ = worst;
+      return failure(outcome == numerics::NewtonOutcome::not_finite ? StepOutcome::not_finite
+                                                                    : StepOutcome::not_converged);
+    }
+  }
   // The forces that the laws have at the end are those that the step took.
   to.slider_force = force_;
   return {};
+}
+
+// Newton's method may turn in circles over the kinks of laws that slip, open and close. Full steps end at the piece of
+// the solution if they end at all; where they do not, the free motion is made in parts, each of which passes few kinks.
+bool LawProblem::solve_by_parts(const system::State& from, system::State& to) {
+  constexpr double least_part = 1e-3, good = 1e3;
+  whole_u_ = u_free_;
+  whole_v_ = v_free_;
+  known_ = from.slider_force;
+  // Where the forces of the start lead back to the start.
+  for (Index i = 0; i < m_; ++i) {
+    first_u_[i] = system_.relative_displacement(i, from.q);
+    first_v_[i] = system_.relative_displacement(i, from.v);
+  }
+  first_u_.noalias() += compliance_ * known_;
+  first_v_.noalias() += velocity_compliance_ * known_;
+  double reached = 0.0, part = 1.0;
+  while (reached < 1.0 && part >= least_part) {
+    const double share = std::min(1.0, reached + part);
+    u_free_ = share < 1.0 ? first_u_ + share * (whole_u_ - first_u_) : whole_u_;
+    v_free_ = share < 1.0 ? first_v_ + share * (whole_v_ - first_v_) : whole_v_;
+    set_box_trials(from);
+    bool is_solved = false;
+    for (const bool has_full_steps : {true, false}) {
+      force_ = known_;
+      is_solved = is_solved || iterate(from, to, has_full_steps, good) == numerics::NewtonOutcome::converged;
+      if (is_solved) break;
+    }
+    if (is_solved) {
+      known_ = force_;
+      reached = share;
+      part *= 2.0;
+    } else {
+      part = 0.5 * (share - reached);
+    }
+  }
+  u_free_ = whole_u_;
+  v_free_ = whole_v_;
+  set_box_trials(from);
+  return reached >= 1.0;
 }
 
 StepReport LawProblem::failure(StepOutcome outcome) const {

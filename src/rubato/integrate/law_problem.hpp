@@ -2,6 +2,7 @@
 
 #include <rubato/integrate/contact_problem.hpp>
 #include <rubato/integrate/step_report.hpp>
+#include <rubato/numerics/newton.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <vector>
@@ -14,7 +15,8 @@ namespace rubato::integrate {
 ///
 /// by Newton's method on the laws, with their consistent tangents; sliders and stops are solved for exactly at every
 /// iteration (ContactProblem), so that it is the method of Josephy (1979) for generalised equations. A step that does
-/// not bring the laws nearer to their equations is shortened.
+/// not bring the laws nearer to their equations is shortened. The force of a contact that presses on a law enters the
+/// linear row of the law, which makes the linear problem unsymmetric.
 class LawProblem {
  public:
   explicit LawProblem(const system::LocallyNonlinear& system);
@@ -35,7 +37,11 @@ class LawProblem {
   struct Iteration;
 
   void start(const system::State& from, const system::State& to);
+  numerics::NewtonOutcome iterate(const system::State& from, system::State& to, bool has_full_steps, double good);
+  bool solve_by_parts(const system::State& from, system::State& to);
+  void press(Index law, const Vector& force);
   void linearise();
+  void take_known_forces(bool of_all_laws);
   bool solve_boxes(const system::State& from, Vector& force);
   void set_box_trials(const system::State& from);
   double evaluate(const Vector& force, system::State& to);
@@ -53,6 +59,8 @@ class LawProblem {
   std::vector<double> reach_;                  // the largest displacement behind u of each law: its round-off
   std::vector<model::Share> joined_;           // what laws join, those of law j from joined_start_[j]
   std::vector<std::size_t> joined_start_;
+  Vector first_u_, first_v_, whole_u_, whole_v_, known_;  // of a motion that is made in parts
+  bool slopes_are_bounded_;  // else a solution far away may be none of the motion from the start
   Index worst_ = -1;
 };
 

@@ -139,6 +139,15 @@ class ReadingVisitor {
   void part(const char* key, const Key&, const std::function<void(ReadingVisitor&)>& read_inner);
   void quantity_or_part(const char* key, std::optional<Quantity>& to, const Key& about,
                         const std::function<void(ReadingVisitor&)>& read_inner);
+  /// A quantity that may use t where it is looked at as one that does.
+  void load_or_part(const char* key, Quantity& to, bool, const Key& about,
+                    const std::function<void(ReadingVisitor&)>& read_inner) {
+    const toml::node* node = reader_.node(key);
+    if (node && node->is_table())
+      part(key, about, read_inner);
+    else
+      quantity(key, to, about);
+  }
   template <class Value>
   void word_or_part(const char* key, Value& to, const std::type_identity_t<std::vector<model::Choice<Value>>>& choices,
                     const Key& about, const std::function<void(ReadingVisitor&)>& read_inner) {

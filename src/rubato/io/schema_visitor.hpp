@@ -131,6 +131,10 @@ class SchemaVisitor {
                         const std::function<void(SchemaVisitor&)>& inner) {
     property(key, one_of({reference("quantity"), inner_schema(inner)}), about);
   }
+  void load_or_part(const char* key, const Quantity&, bool, const Key& about,
+                    const std::function<void(SchemaVisitor&)>& inner) {
+    property(key, one_of({reference("quantity"), inner_schema(inner)}), about);
+  }
   template <class Value>
   void word_or_part(const char* key, const Value&, const std::type_identity_t<std::vector<model::Choice<Value>>>& words,
                     const Key& about, const std::function<void(SchemaVisitor&)>& inner) {

@@ -1,5 +1,6 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/laws/jenkins.hpp>
 #include <rubato/model/load_laws.hpp>
 #include <rubato/model/model.hpp>
 
@@ -33,6 +34,7 @@ class Builder {
     take_sliders();
     take_stops();
     take_laws();
+    take_pressed_sliders();
     for (const ForceDescription& force : description_.forces) {
       if (force.follows)
         throw InvalidInput(force.follows_where, fmt::format("the force on \"{}\" follows its node, which takes a "
@@ -265,9 +267,8 @@ class Builder {
       const std::string part = fmt::format("slider \"{}\"", description.name);
       if (description.name.empty()) throw InvalidInput(description.where, "a slider needs a name");
       refuse_unfit_name(description.name, description.where);
-      for (const Slider& other : model_.sliders)
-        if (other.name == description.name)
-          throw InvalidInput(description.where, fmt::format("two sliders are called \"{}\"", description.name));
+      if (is_slider(description.name))
+        throw InvalidInput(description.where, fmt::format("two sliders are called \"{}\"", description.name));
       if (places_.count(description.name) > 0)
         throw InvalidInput(description.where,
                            fmt::format("{} has the name of a coordinate; results would mix them up", part));
@@ -278,10 +279,33 @@ class Builder {
       if (!(slider.stiffness > 0.0))
         throw InvalidInput(description.stiffness.where,
                            fmt::format("{}: stiffness must be positive, got {}", part, slider.stiffness));
-      slider.limit = at_least_zero(description.friction_coefficient, part + ": friction_coefficient") *
-                     normal_load(description.normal_load, part + ": normal_load");
+      const double mu = at_least_zero(description.friction_coefficient, part + ": friction_coefficient");
+      if (description.is_law()) {
+        pressed_.push_back(
+            {slider.name, "slider", slider.first, slider.second, make_jenkins(slider.stiffness, mu), {}, {}});
+        continue;
+      }
+      slider.limit = mu * normal_load(description.normal_load, part + ": normal_load");
       model_.sliders.push_back(slider);
     }
+  }
+
+  /// Sliders that are laws, behind the laws that may press on them.
+  void take_pressed_sliders() {
+    std::size_t next = 0;
+    for (const SliderDescription& description : description_.sliders) {
+      if (!description.is_law()) continue;
+      LawBetween& law = pressed_[next++];
+      law.normal = build_normal_force(description, description_.sliders, model_, parameters_,
+                                      fmt::format("slider \"{}\"", law.name));
+    }
+    model_.laws.insert(model_.laws.end(), pressed_.begin(), pressed_.end());
+  }
+
+  bool is_slider(const std::string& name) const {
+    const auto is_called_so = [&](const auto& other) { return other.name == name; };
+    return std::any_of(model_.sliders.begin(), model_.sliders.end(), is_called_so) ||
+           std::any_of(pressed_.begin(), pressed_.end(), is_called_so);
   }
 
   void take_stops() {
@@ -292,8 +316,7 @@ class Builder {
       const auto is_called_so = [&](const auto& other) { return other.name == description.name; };
       if (std::any_of(model_.stops.begin(), model_.stops.end(), is_called_so))
         throw InvalidInput(description.where, fmt::format("two stops are called \"{}\"", description.name));
-      if (std::any_of(model_.sliders.begin(), model_.sliders.end(), is_called_so) ||
-          places_.count(description.name) > 0)
+      if (is_slider(description.name) || places_.count(description.name) > 0)
         throw InvalidInput(description.where,
                            fmt::format("{} has the name of a slider or a coordinate; results would mix them up", part));
       Stop stop;
@@ -318,8 +341,8 @@ class Builder {
       const auto is_called_so = [&](const auto& other) { return other.name == description.name; };
       if (std::any_of(model_.laws.begin(), model_.laws.end(), is_called_so))
         throw InvalidInput(description.where, fmt::format("two laws are called \"{}\"", description.name));
-      if (std::any_of(model_.sliders.begin(), model_.sliders.end(), is_called_so) ||
-          std::any_of(model_.stops.begin(), model_.stops.end(), is_called_so) || places_.count(description.name) > 0)
+      if (is_slider(description.name) || std::any_of(model_.stops.begin(), model_.stops.end(), is_called_so) ||
+          places_.count(description.name) > 0)
         throw InvalidInput(
             description.where,
             fmt::format("{} has the name of a slider, a stop or a coordinate; results would mix them up", part));
@@ -483,6 +506,7 @@ class Builder {
   const Parameters& parameters_;
   NegativeLoad negative_load_;
   Model model_;
+  std::vector<LawBetween> pressed_;  // sliders whose load does not stay the same
   Index first_of_nodes_ = 0;
   std::unordered_map<std::string, Index> places_;
   std::unordered_set<std::string> fixed_;

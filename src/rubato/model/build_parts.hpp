@@ -28,6 +28,12 @@ Prescribed build_prescribed(const PrescribedDescription& description, Index coor
 /// The name of a slider, stop or law in whose u a coordinate is; empty: none.
 std::string contact_at(const Model& model, Index coordinate);
 
+/// What presses on a slider whose load does not stay the same, among the stops and laws of a model that has all of
+/// them. Throws InvalidInput.
+/// @param part  "slider \"s1\""
+NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
+                               const Model& model, const numerics::Parameters& parameters, const std::string& part);
+
 /// @param n  coordinates of the model
 Damping build_damping(const DampingDescription& description, Index n, const numerics::Parameters& parameters);
 /// Where damping is described; of no damping, nowhere.

@@ -72,8 +72,13 @@ struct SliderDescription {
   std::array<Location, 2> between_where;
   Quantity stiffness;             ///< kT [N/m]
   Quantity friction_coefficient;  ///< mu [-]
-  Quantity normal_load;           ///< N [N]
+  Quantity normal_load;           ///< N [N]; may use t: what presses is its positive part
+  std::string normal_law;         ///< instead: a stop or a law, whose force presses; empty: normal_load counts
+  Location normal_law_where;
   Location where;
+
+  /// Whether N does not stay the same: the slider is a law then, as others are (model/laws/jenkins.hpp).
+  bool is_law() const;
 };
 
 /// One-sided stop: pushes its ends apart where u = x_first - x_second exceeds the gap.

@@ -1,6 +1,9 @@
+#include <rubato/core/error.hpp>
 #include <rubato/model/bodies/following_force.hpp>
 #include <rubato/model/bodies/gyroscopic.hpp>
 #include <rubato/model/mechanism.hpp>
+
+#include <fmt/format.h>
 
 #include <cmath>
 #include <type_traits>
@@ -141,6 +144,11 @@ int Mechanism::add_shared_friction(int leader, const FreeCoordinate& s, double a
 
 void Mechanism::add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
                         std::shared_ptr<const Law> law) {
+  if (law->takes_normal())
+    throw InvalidInput(
+        fmt::format("\"{}\" is a law that takes a normal force, and nothing presses on laws of mechanisms; "
+                    "give the joint a friction of its own",
+                    name));
   laws.push_back({name, kind, u, std::move(law), static_cast<Index>(laws.size()), law_memory_size, elements.size()});
   law_memory_size += laws.back().law->memory_size();
   elements.push_back(make_law_element(laws.back()));

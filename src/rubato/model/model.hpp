@@ -51,6 +51,22 @@ struct Share {
   double weight = 0.0;  ///< [-]; [m/rad] of a rotation in a displacement
 };
 
+/// What presses the ends of a law together, across its u [N]: a number, a formula of t, or the force of a stop or of
+/// another law. It is the normal force where it is positive; elsewhere the ends are apart.
+struct NormalForce {
+  double value = 0.0;
+  std::shared_ptr<const numerics::Formula> formula = nullptr;  ///< of t, instead
+  Index stop = -1, law = -1;  ///< place among the stops or the laws of the one whose force presses, instead
+
+  bool depends_on_motion() const { return stop >= 0 || law >= 0; }
+  /// Of a number or a formula.
+  double at(double t, Side side) const {
+    if (!formula) return value;
+    if (!formula->has_switches()) return (*formula)(t);
+    return side == Side::left ? formula->from_left(t) : formula->from_right(t);
+  }
+};
+
 /// A law on u = x_first - x_second + the sum of its shares; -force du/dx acts on each coordinate.
 struct LawBetween {
   std::string name;
@@ -58,6 +74,7 @@ struct LawBetween {
   Index first = ground, second = ground;
   std::shared_ptr<const Law> law;
   std::vector<Share> shares = {};  ///< instead of the ends
+  NormalForce normal = {};         ///< of a law that takes one
 };
 
 struct Force {

@@ -3,6 +3,8 @@
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -32,8 +34,9 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
     contacts_.push_back({law.first, law.second});
     memory_start_.push_back(memory_size_);
     memory_size_ += law.law->memory_size();
-    has_laws_of_time_ = has_laws_of_time_ || law.law->depends_on_time();
+    has_laws_of_time_ = has_laws_of_time_ || law.law->depends_on_time() || law.normal.formula;
   }
+  order_laws();
   if (start.memory.size() == 0) start.memory = Vector::Zero(memory_size_);
   assert(start.memory.size() == memory_size_);
   if (start.slider_force.size() == 0) start.slider_force = Vector::Zero(contact_count());
@@ -45,6 +48,53 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
   parts_.damping.makeCompressed();
   parts_.stiffness.makeCompressed();
   has_diagonal_mass_ = is_diagonal(parts_.mass);
+}
+
+void LocallyNonlinear::order_laws() {
+  const auto count = static_cast<std::size_t>(law_count());
+  normal_contact_.assign(count, -1);
+  for (std::size_t j = 0; j < count; ++j) {
+    const model::LawBetween& law = parts_.laws[j];
+    if (!law.law->takes_normal()) continue;
+    has_normals_ = true;
+    if (law.normal.stop >= 0) normal_contact_[j] = slider_count() + law.normal.stop;
+    if (law.normal.law >= 0) normal_contact_[j] = first_law() + law.normal.law;
+    assert(normal_contact_[j] < contact_count());
+  }
+  std::vector<char> is_placed(count, 0);
+  const auto is_ready = [&](std::size_t j) {
+    const Index by = normal_contact_[j] - first_law();
+    return is_placed[j] == 0 && (by < 0 || is_placed[static_cast<std::size_t>(by)] != 0);
+  };
+  for (std::size_t placed = 0; placed < count; ++placed) {
+    std::size_t next = 0;
+    while (next < count && !is_ready(next)) ++next;
+    if (next == count) {
+      const auto left = static_cast<std::size_t>(std::find(is_placed.begin(), is_placed.end(), 0) - is_placed.begin());
+      throw InvalidInput(fmt::format("what presses on \"{}\" depends on itself, by the normal forces of other laws",
+                                     parts_.laws[left].name));
+    }
+    is_placed[next] = 1;
+    law_order_.push_back(static_cast<Index>(next));
+  }
+}
+
+double LocallyNonlinear::normal_force(Index j, const State& state, const Vector& contact_force,
+                                      model::Side side) const {
+  const model::LawBetween& law = parts_.laws[static_cast<std::size_t>(j)];
+  if (!law.law->takes_normal()) return 0.0;
+  const Index by = normal_contact(j);
+  if (by < 0) return law.normal.at(state.t, side);
+  if (by >= first_law()) return contact_force[by];
+  if (contact_force[by] > 0.0) return contact_force[by];
+  const model::Stop& stop = parts_.stops[static_cast<std::size_t>(by - slider_count())];
+  return std::min(0.0, stop.stiffness * (relative_displacement(by, state.q) - stop.gap));
+}
+
+bool LocallyNonlinear::has_friction() const {
+  return slider_count() > 0 || std::any_of(parts_.laws.begin(), parts_.laws.end(), [](const model::LawBetween& law) {
+           return law.law->sticking_stiffness() > 0.0;
+         });
 }
 
 void LocallyNonlinear::add_slider_forces(const Vector& slider_force, double factor, Vector& out) const {
@@ -78,18 +128,25 @@ void LocallyNonlinear::set_stop_forces(State& state) const {
 }
 
 void LocallyNonlinear::find_law_forces(const State& state, model::Side side, Vector& contact_force) const {
-  for (Index j = 0; j < law_count(); ++j)
-    contact_force[first_law() + j] = parts_.laws[static_cast<std::size_t>(j)]
-                                         .law->at(law_point(j, state, side), state.memory.data() + memory_of(j))
-                                         .force;
+  for (const Index j : law_order_) {
+    const Index i = first_law() + j;
+    const model::LawPoint point{relative_displacement(i, state.q), relative_displacement(i, state.v), state.t, side,
+                                has_normals_ ? normal_force(j, state, contact_force, side) : 0.0};
+    contact_force[i] =
+        parts_.laws[static_cast<std::size_t>(j)].law->at(point, state.memory.data() + memory_of(j)).force;
+  }
 }
 
 void LocallyNonlinear::add_law_breakpoints(double from, double to, std::vector<double>& times) const {
-  for (const auto& law : parts_.laws) numerics::add_switches(law.law->breakpoints(from, to), from, to, times);
+  for (const auto& law : parts_.laws) {
+    numerics::add_switches(law.law->breakpoints(from, to), from, to, times);
+    if (law.normal.formula && law.normal.formula->has_switches())
+      numerics::add_switches(law.normal.formula->switches(from, to), from, to, times);
+  }
 }
 
 void LocallyNonlinear::move_laws(const State& before, State& state) const {
-  for (Index j = 0; j < law_count(); ++j)
+  for (const Index j : law_order_)
     state.slider_force[first_law() + j] =
         parts_.laws[static_cast<std::size_t>(j)]
             .law
@@ -132,6 +189,8 @@ SparseMatrix LocallyNonlinear::free_damping() const {
 SparseMatrix LocallyNonlinear::stuck_stiffness() const {
   std::vector<double> coefficients;
   for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
+  coefficients.resize(static_cast<std::size_t>(first_law()), 0.0);
+  for (const auto& law : parts_.laws) coefficients.push_back(law.law->sticking_stiffness());
   return with_contacts(free_stiffness(), coefficients);
 }
 

@@ -109,8 +109,20 @@ class LocallyNonlinear final : public System {
   /// What law j sees at a state.
   model::LawPoint law_point(Index j, const State& state, model::Side side) const {
     const Index i = first_law() + j;
-    return {relative_displacement(i, state.q), relative_displacement(i, state.v), state.t, side};
+    return {relative_displacement(i, state.q), relative_displacement(i, state.v), state.t, side,
+            has_normals_ ? normal_force(j, state, state.slider_force, side) : 0.0};
   }
+  /// Whether a law takes a normal force.
+  bool has_normals() const { return has_normals_; }
+  /// The contact whose force presses on law j; -1 where a number or a formula of t does, or nothing.
+  Index normal_contact(Index j) const { return normal_contact_[static_cast<std::size_t>(j)]; }
+  /// What presses on law j at a state with given forces of the contacts [N]. That of an open stop is what its spring
+  /// would pull, so that the instant at which it closed within a step shows.
+  double normal_force(Index j, const State& state, const Vector& contact_force, model::Side side) const;
+  /// The laws, each behind those that press on it.
+  const std::vector<Index>& law_order() const { return law_order_; }
+  /// Whether anything sticks and slips: sliders, or laws that do.
+  bool has_friction() const;
   /// Sets the forces of all laws at a state, by the memory that it has.
   void set_law_forces(State& state, model::Side side) const { find_law_forces(state, side, state.slider_force); }
   /// Writes them behind those of sliders and stops.
@@ -124,9 +136,9 @@ class LocallyNonlinear final : public System {
   /// out += factor * B fc, of all contacts
   void add_slider_forces(const Vector& slider_force, double factor, Vector& out) const;
 
-  /// That K plus kT of all sliders: the stiffness with the sliders stuck and the stops open.
+  /// That K plus kT of all sliders, and of laws that stick: the stiffness with the sliders stuck and the stops open.
   SparseMatrix stuck_stiffness() const;
-  /// K and C with the slopes of the laws where nothing has moved yet, without sliders and stops.
+  /// K and C with the slopes of the laws where nothing has moved yet and nothing presses, without sliders and stops.
   SparseMatrix free_stiffness() const;
   SparseMatrix free_damping() const;
   /// C and that K with all stops closed besides: what bounds the step of explicit methods.
@@ -134,7 +146,9 @@ class LocallyNonlinear final : public System {
   SparseMatrix closed_stiffness() const;
 
  private:
-  /// The slopes of the laws where nothing has moved yet, as coefficients of all contacts; others are zero.
+  void order_laws();
+  /// The slopes of the laws where nothing has moved yet and nothing presses, as coefficients of all contacts; others
+  /// are zero.
   std::vector<double> law_slopes(double model::LawAnswer::*slope) const;
   SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
 
@@ -143,6 +157,8 @@ class LocallyNonlinear final : public System {
   std::vector<ContactShare> shares_;
   std::vector<Index> memory_start_;
   Index memory_size_ = 0;
+  std::vector<Index> normal_contact_, law_order_;  // of each law; laws behind those that press on them
+  bool has_normals_ = false;
   bool has_laws_of_time_ = false;
   bool has_diagonal_mass_ = false;
 };

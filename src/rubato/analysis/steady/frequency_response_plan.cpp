@@ -99,7 +99,8 @@ Route route_of(steady::SteadyRoute::Kind kind) {
 Description with_route(Description description, const StudyInput& input) {
   const bool is_named = description.route_where.line > 0;
   if (!is_named && description.route == Description::Route::periodic && input.structure().law_count() > 0)
-    description.route = Description::Route::harmonic_balance;
+    description.route = refusal(Route::harmonic_balance, input.kind) ? Description::Route::time_marching
+                                                                     : Description::Route::harmonic_balance;
   return description;
 }
 

@@ -33,8 +33,9 @@ ParametricExcitation::ParametricExcitation(const StudyInput& input, const Parame
   }
   for (const auto& law : model::load_laws(input.study.model)) laws_.push_back(law_of(law));
   for (const auto& slider : input.study.model.sliders)
-    limits_.push_back({value_of(slider.friction_coefficient), value_of(slider.normal_load),
-                       fmt::format("slider \"{}\"", slider.name)});
+    if (!slider.is_law())
+      limits_.push_back({value_of(slider.friction_coefficient), value_of(slider.normal_load),
+                         fmt::format("slider \"{}\"", slider.name)});
 }
 
 ParametricExcitation::Value ParametricExcitation::value_of(const model::Quantity& quantity) {

@@ -5,6 +5,8 @@
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
+#include <Eigen/SparseLU>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,6 +44,9 @@ class Growth final : public numerics::NewtonProblem {
     most_summands_ = most_summands();
     tangent_.emplace(system, place_, static_cast<Index>(free_.size()));
     if (!free_.empty()) factor_.analyse(tangent_->with(slope_));
+    take_normals();
+    for (const model::LawBetween& law : system.laws())
+      slopes_are_bounded_ = slopes_are_bounded_ && std::isfinite(law.law->largest_stiffness());
   }
 
   StaticEquilibrium solve() {
@@ -124,12 +129,16 @@ class Growth final : public numerics::NewtonProblem {
   bool factorise() {
     if (free_.empty()) return true;
     ++factorisations_;
+    if (!is_symmetric_) return factorise_with_normals();
     return factor_.factorise(tangent_->with(slope_));
   }
   double correct() {
     Vector right(static_cast<Index>(free_.size())), solution;
     for (std::size_t i = 0; i < free_.size(); ++i) right[static_cast<Index>(i)] = residual_[free_[i]];
-    if (!free_.empty()) factor_.solve(right, solution);
+    if (!free_.empty() && is_symmetric_)
+      factor_.solve(right, solution);
+    else if (!free_.empty())
+      solution = unsymmetric_.solve(right);
     for (std::size_t i = 0; i < free_.size(); ++i) change_[free_[i]] = solution[static_cast<Index>(i)];
     return change_.norm();
   }
@@ -145,17 +154,29 @@ class Growth final : public numerics::NewtonProblem {
   }
   bool may_be_halved(double) const { return !is_round_off_ && !may_be_enough_; }
   bool is_lower(double residual, double before, double part) const {
-    return is_round_off_ || residual < (1.0 - 0.1 * part) * before;
+    return has_full_steps_ || is_round_off_ || residual < (1.0 - 0.1 * part) * before;
   }
 
  private:
   /// Newton's method to round-off of the residual.
   bool is_balanced() {
+    const Vector begin = accepted_;
     const numerics::NewtonReport report = numerics::newton(*this, rules());
     if (report.has_converged()) return true;
-    if (report.outcome != numerics::NewtonOutcome::diverged || !may_be_enough_) return false;
-    evaluate(true);  // no correction does better
-    return true;
+    if (report.outcome == numerics::NewtonOutcome::diverged && may_be_enough_) {
+      evaluate(true);  // no correction does better
+      return true;
+    }
+    return slopes_are_bounded_ && is_balanced_by_full_steps(begin);
+  }
+
+  /// Over the kinks of laws that slip, open and close the residual may have to rise before it vanishes.
+  bool is_balanced_by_full_steps(const Vector& begin) {
+    state_.q = accepted_ = begin;
+    has_full_steps_ = true;
+    const bool is_found = numerics::newton(*this, rules()).has_converged();
+    has_full_steps_ = false;
+    return is_found;
   }
 
   /// Whether a residual is no larger than the sums at all coordinates may be off by together: one of m terms by m - 1
@@ -198,20 +219,79 @@ class Growth final : public numerics::NewtonProblem {
         force = stop.stiffness * std::max(0.0, u - stop.gap);
         slope_[i] = u > stop.gap ? stop.stiffness : 0.0;
       } else {
-        const Index law = i - system_.first_law(), memory = system_.memory_of(law);
-        virgin_.setZero(system_.memory_size());
-        const model::LawPoint from{0.0, 0.0, 0.0, model::Side::left}, to{u, 0.0, 0.0, model::Side::left};
-        const model::LawAnswer answer = system_.laws()[static_cast<std::size_t>(law)].law->advance(
-            from, virgin_.data() + memory, to, state_.memory.data() + memory);
-        force = answer.force;
-        slope_[i] = answer.by_u;
+        break;
       }
+    }
+    for (const Index law : system_.law_order()) load_law(law);
+  }
+
+  void load_law(Index law) {
+    const Index i = system_.first_law() + law, memory = system_.memory_of(law);
+    const double u = system_.relative_displacement(i, state_.q);
+    virgin_.setZero(system_.memory_size());
+    model::LawPoint from{0.0, 0.0, 0.0, model::Side::left}, to{u, 0.0, 0.0, model::Side::left};
+    if (system_.has_normals()) {
+      from.normal = normal_at_rest_[law];
+      to.normal = system_.normal_force(law, state_, state_.slider_force, model::Side::left);
+    }
+    const model::LawAnswer answer = system_.laws()[static_cast<std::size_t>(law)].law->advance(
+        from, virgin_.data() + memory, to, state_.memory.data() + memory);
+    state_.slider_force[i] = answer.force;
+    slope_[i] = answer.by_u;
+    by_normal_[law] = answer.by_normal;
+  }
+
+  /// What presses where nothing has moved, from where normal forces grow with the motion.
+  void take_normals() {
+    by_normal_.setZero(system_.law_count());
+    normal_at_rest_.setZero(system_.law_count());
+    if (!system_.has_normals()) return;
+    system::State rest = state_;
+    rest.v.setZero();
+    rest.slider_force.setZero();
+    system_.set_stop_forces(rest);
+    system_.set_law_forces(rest, model::Side::left);
+    for (Index j = 0; j < system_.law_count(); ++j) {
+      normal_at_rest_[j] = system_.normal_force(j, rest, rest.slider_force, model::Side::left);
+      is_symmetric_ = is_symmetric_ && system_.normal_contact(j) < 0;
     }
   }
 
+  /// With what normal forces that follow from the motion add: the force of a law changes by
+  ///   df = slope b^T dq + (df/dN) dN,   dN the change of the force that presses, by the same formula
+  bool factorise_with_normals() {
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<std::vector<model::Share>> changes(static_cast<std::size_t>(system_.law_count()));
+    for (const Index law : system_.law_order()) {
+      const Index by = system_.normal_contact(law);
+      if (by < 0 || by_normal_[law] == 0.0) continue;
+      auto& change = changes[static_cast<std::size_t>(law)];
+      for (const model::Share& share : columns_[static_cast<std::size_t>(by)])
+        change.push_back({share.coordinate, by_normal_[law] * slope_[by] * share.weight});
+      if (by >= system_.first_law())
+        for (const model::Share& share : changes[static_cast<std::size_t>(by - system_.first_law())])
+          change.push_back({share.coordinate, by_normal_[law] * share.weight});
+      for (const model::Share& row : columns_[static_cast<std::size_t>(system_.first_law() + law)])
+        for (const model::Share& column : change) {
+          const Index to = place_[static_cast<std::size_t>(row.coordinate)];
+          const Index from = place_[static_cast<std::size_t>(column.coordinate)];
+          if (to != ground && from != ground) entries.emplace_back(to, from, row.weight * column.weight);
+        }
+    }
+    const auto n = static_cast<Index>(free_.size());
+    SparseMatrix added(n, n);
+    added.setFromTriplets(entries.begin(), entries.end());
+    unsymmetric_.compute(Eigen::SparseMatrix<double>(tangent_->with(slope_) + added));
+    return unsymmetric_.info() == Eigen::Success;
+  }
+
+  /// Pivots of the symmetric part find what nothing resists. A tangent that is not symmetric has given way, too, where
+  /// its determinant has changed its sign.
   bool is_stable() {
-    return free_.empty() ||
-           factorise_resisting(tangent_->with(slope_), numerics::Pivots::positive, factor_, factorisations_, moving_);
+    if (free_.empty()) return true;
+    if (!factorise_resisting(tangent_->with(slope_), numerics::Pivots::positive, factor_, factorisations_, moving_))
+      return false;
+    return is_symmetric_ || (factorise_with_normals() && unsymmetric_.signDeterminant() > 0.0);
   }
 
   /// The coordinates that a little more of the loads would move most.
@@ -231,6 +311,8 @@ class Growth final : public numerics::NewtonProblem {
   std::vector<Index> moving_;        // places of the easiest motion
   numerics::OrderedFactor factor_;
   std::optional<ContactTangent> tangent_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> unsymmetric_;  // where a normal force follows from the motion
+  bool is_symmetric_ = true;
   int factorisations_ = 0;
   double share_ = 1.0;  // of the loads
   system::State state_;
@@ -243,7 +325,10 @@ class Growth final : public numerics::NewtonProblem {
   double last_ = 0.0;           // the residual at the last iterate that was accepted
   bool may_be_enough_ = false;  // likewise
   bool is_round_off_ = false, has_stalled_ = false;
+  bool has_full_steps_ = false;     // whether the residual falls or not
+  bool slopes_are_bounded_ = true;  // else an equilibrium far away may be one that loads do not lead to
   Vector accepted_, change_, residual_, slope_, virgin_;
+  Vector by_normal_, normal_at_rest_;  // of each law: df/dN, and what presses where nothing has moved
 };
 
 }  // namespace

@@ -9,7 +9,8 @@ struct NonlinearPart {
   enum class Family {
     slider,
     stop,
-    law,  ///< of any kind in model/laws
+    law,             ///< of any kind in model/laws
+    pressed_slider,  ///< whose normal load follows from t or from the force of another part
     joint_friction,
     lock
   };

@@ -43,7 +43,11 @@ std::string counted(Index count, const char* what) {
 }  // namespace
 
 std::string StructureKind::summary() const {
-  return fmt::format("{}, {}{}", counted(system_.size(), "coordinate"), counted(system_.slider_count(), "slider"),
+  const auto laws_that_slip =
+      std::count_if(system_.laws().begin(), system_.laws().end(),
+                    [](const model::LawBetween& law) { return law.law->sticking_stiffness() > 0.0; });
+  return fmt::format("{}, {}{}", counted(system_.size(), "coordinate"),
+                     counted(system_.slider_count() + laws_that_slip, "slider"),
                      system_.stop_count() > 0 ? ", " + counted(system_.stop_count(), "stop") : "");
 }
 
@@ -51,15 +55,20 @@ std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
   std::vector<NonlinearPart> parts;
   for (const auto& slider : system_.sliders()) parts.push_back({NonlinearPart::Family::slider, "slider", slider.name});
   for (const auto& stop : system_.stops()) parts.push_back({NonlinearPart::Family::stop, "stop", stop.name});
-  for (const auto& law : system_.laws())
-    parts.push_back({NonlinearPart::Family::law, law.kind, law.name, law.law->depends_on_time()});
+  for (const auto& law : system_.laws()) {
+    const bool is_pressed = law.law->takes_normal() && (law.normal.formula || law.normal.depends_on_motion());
+    parts.push_back({is_pressed ? NonlinearPart::Family::pressed_slider : NonlinearPart::Family::law, law.kind,
+                     law.name, law.law->depends_on_time() || law.normal.formula});
+  }
   return parts;
 }
 
 void StructureKind::for_each_time_law(const std::function<void(const model::TimeLaw&)>& show) const {
   for (const auto& term : system_.loads().terms()) show(term.law);
-  for (const auto& law : system_.laws())
+  for (const auto& law : system_.laws()) {
     if (const numerics::Formula* formula = law.law->formula_of_time()) show(model::FormulaLaw{*formula});
+    if (law.normal.formula) show(model::FormulaLaw{*law.normal.formula});
+  }
 }
 
 std::optional<HarmonicOscillator> StructureKind::oscillator() const {

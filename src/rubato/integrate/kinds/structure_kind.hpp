@@ -41,7 +41,7 @@ class StructureKind final : public SystemKind {
   Equilibrium find_equilibrium(const system::State& start, std::span<const model::Held> held) const override;
 
   Index mode_count(const ModesRequest& request) const override;
-  Index limit_count() const override { return system_.slider_count() > 0 ? 2 : 1; }
+  Index limit_count() const override { return system_.has_friction() ? 2 : 1; }
   system::State held_still(const system::State& state, std::vector<std::string>&) const override { return state; }
   /// Of the linear model, whatever the state.
   FreeMotions free_motions(const system::State& state, Index limit, Index count) const override;

@@ -33,9 +33,20 @@ void fields(auto& visit, Like<SliderDescription> auto& slider) {
   visit.between("between", slider.between, slider.between_where, {.required = true});
   visit.quantity("stiffness", slider.stiffness,
                  {.required = true, .unit = "N/m", .says = "kT", .range = Range::positive});
+  const bool is_law = slider.is_law();
+  const Role role = is_law ? Role::structure : Role::limit;
   visit.quantity("friction_coefficient", slider.friction_coefficient,
-                 {.required = true, .unit = "-", .says = "mu", .role = Role::limit});
-  visit.quantity("normal_load", slider.normal_load, {.required = true, .unit = "N", .says = "N", .role = Role::limit});
+                 {.required = true, .unit = "-", .says = "mu", .role = role});
+  visit.load_or_part("normal_load", slider.normal_load, is_law,
+                     {.required = true,
+                      .unit = "N",
+                      .says = "N, which may use t; or { law = \"NAME\" }, the force of a stop or of another law",
+                      .role = role},
+                     [&](auto& inner) {
+                       inner.text("law", slider.normal_law,
+                                  {.required = true, .says = "the stop or law whose force presses"});
+                       inner.where_given(slider.normal_law_where, "law");
+                     });
 }
 
 void fields(auto& visit, Like<StopDescription> auto& stop) {

@@ -17,6 +17,9 @@ class QuantityVisitor {
   void quantity(const char*, const std::optional<Quantity>& quantity, const Key& key) const {
     if (quantity) take_(*quantity, key.role, false);
   }
+  void load_or_part(const char*, const Quantity& quantity, bool uses_time, const Key& key, const auto&) const {
+    take_(quantity, key.role, uses_time);
+  }
   void formula(const char*, const Quantity& quantity, const Key& key) const { take_(quantity, key.role, true); }
   void quantities(const char*, const std::vector<Quantity>& list, const Size&, const Key& key) const {
     for (const Quantity& quantity : list) take_(quantity, key.role, false);

@@ -15,17 +15,21 @@ struct LawPoint {
   double rate = 0.0;        ///< du/dt [m/s] or [rad/s]
   double t = 0.0;           ///< [s]
   Side side = Side::right;  ///< which limit to take of a law that jumps at t
+  double normal = 0.0;      ///< what presses its ends together, across u [N]; they are apart where it is not positive
 };
 
 /// A force with its slopes. It resists: its ends are pushed together where u and the force are positive.
 struct LawAnswer {
-  double force = 0.0;    ///< f [N] or [N m]
-  double by_u = 0.0;     ///< df/du [N/m]
-  double by_rate = 0.0;  ///< df/d(du/dt) [N s/m]
+  double force = 0.0;      ///< f [N] or [N m]
+  double by_u = 0.0;       ///< df/du [N/m]
+  double by_rate = 0.0;    ///< df/d(du/dt) [N s/m]
+  double by_normal = 0.0;  ///< df/d(normal) [-]
 };
 
 /// What acts: a formula of a relative motion, with a memory of its own. Immutable, and shared by threads: the memory is
 /// a part of the state of a system and is handed in.
+///
+/// A law that takes a normal force is told it with every point; in a step it goes in a straight line against u.
 ///
 /// Everything that integrates asks for advance() and at() alone: what a law does within a step, from its start, and
 /// what small motions about a point do.
@@ -71,6 +75,19 @@ class Law {
     (void)to;
     (void)near;
     return 1.0;
+  }
+
+  /// Whether a normal force counts. Where such a law acts it is said what presses (model::NormalForce).
+  virtual bool takes_normal() const { return false; }
+  /// What law of friction it is: the slope by u while it sticks, which it has not while it slips or is open [N/m]. Zero
+  /// of a law that does not stick. Small motions have a limit with it and one without, as those of sliders do.
+  virtual double sticking_stiffness() const { return 0.0; }
+  /// What a law that sticks does at a point; of others `none`.
+  enum class Contact : signed char { none, sticks, slips_forwards, slips_backwards, open };
+  virtual Contact contact(const LawPoint& point, const double* memory) const {
+    (void)point;
+    (void)memory;
+    return Contact::none;
   }
 
   virtual bool depends_on_rate() const { return false; }

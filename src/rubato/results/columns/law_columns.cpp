@@ -1,6 +1,8 @@
 #include <rubato/integrate/law_energy.hpp>
 #include <rubato/results/columns/law_columns.hpp>
 
+#include <algorithm>
+
 namespace rubato::results {
 
 LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
@@ -8,6 +10,8 @@ LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
   for (Index j = 0; j < system.law_count(); ++j) {
     (system.is_law_of_rotations(j) ? of_rotations_ : of_displacements_).push_back(j);
   }
+  for (const Index j : order())
+    if (system.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness() > 0.0) of_friction_.push_back(j);
 }
 
 void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout) {
@@ -27,6 +31,11 @@ void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool
 void LawColumns::add(TableLayout& layout) const {
   for (const bool is_rotation : {false, true})
     add_law_blocks(names_of(is_rotation ? of_rotations_ : of_displacements_), is_rotation, in_motion_, layout);
+  if (of_friction_.empty()) return;
+  layout.blocks.push_back(
+      {"slip", "m", "slip of a law of friction, u - force/kT", "law_of_friction", names_of(of_friction_)});
+  layout.blocks.push_back(
+      {"normal_force", "N", "what presses on it, 0 where it is open", "law_of_friction", names_of(of_friction_)});
 }
 
 void LawColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {
@@ -64,6 +73,12 @@ void LawColumns::append_since(const system::State& before, const system::State& 
       row.push_back(dissipated_[j] +
                     (before.t == state.t ? 0.0 : integrate::dissipated_by_law(system_, j, before, state)));
   }
+  for (const Index j : of_friction_)
+    row.push_back(system_.relative_displacement(first + j, state.q) -
+                  state.slider_force[first + j] /
+                      system_.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness());
+  for (const Index j : of_friction_)
+    row.push_back(std::max(0.0, system_.law_point(j, state, model::Side::right).normal));
 }
 
 }  // namespace rubato::results

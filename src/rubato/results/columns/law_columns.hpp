@@ -12,7 +12,8 @@ namespace rubato::results {
 void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout);
 
 /// Columns of the laws beside sliders and stops: `force` and `displacement`, of those between rotations `moment` and
-/// `angle`; in a motion `dissipated` since its start as well.
+/// `angle`; in a motion `dissipated` since its start as well; of laws of friction `slip` and `normal_force` behind
+/// them.
 class LawColumns final : public ColumnGroup {
  public:
   /// @param in_motion  whether steps are booked
@@ -34,7 +35,7 @@ class LawColumns final : public ColumnGroup {
 
   const system::LocallyNonlinear& system_;
   bool in_motion_;
-  std::vector<Index> of_displacements_, of_rotations_;
+  std::vector<Index> of_displacements_, of_rotations_, of_friction_;
   Vector dissipated_;  // by each law in the steps that are booked [J]
 };
 

@@ -25,8 +25,8 @@ double holding_stiffness_of(const std::vector<model::Share>& column, double stif
 double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index law, const Vector& diagonal) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Vector memory = Vector::Zero(system.memory_size());
-  const double at_rest =
-      system.laws()[static_cast<std::size_t>(law)].law->at({}, memory.data() + system.memory_of(law)).by_u;
+  const model::Law& one = *system.laws()[static_cast<std::size_t>(law)].law;
+  const double at_rest = one.at({}, memory.data() + system.memory_of(law)).by_u + one.sticking_stiffness();
   const double held =
       holding_stiffness_of(system.column(system.first_law() + law), at_rest > 0.0 ? at_rest : infinity, diagonal);
   return std::isfinite(held) ? held : 1.0;

@@ -3,6 +3,8 @@
 #include <rubato/steady/harmonic_balance/harmonic_balance_parts.hpp>
 #include <rubato/steady/marching/orbit_search.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,6 +49,12 @@ HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonli
       structure(s, request.observed),
       sliders(s.slider_count()),
       patterns(s.size(), 0) {
+  for (const model::LawBetween& law : s.laws())
+    if (law.law->takes_normal() && (law.normal.formula || law.normal.depends_on_motion()))
+      throw InvalidInput(
+          fmt::format("harmonic balance samples laws under normal forces that stay the same, and that of "
+                      "\"{}\" does not; take solver = \"time_marching\"",
+                      law.name));
   stiffness = structure.holding_stiffness();
   for (Index j = 0; j < sliders; ++j) stiffness[j] = s.sliders()[static_cast<std::size_t>(j)].stiffness;
   limits = Vector::Constant(stiffness.size(), infinity);

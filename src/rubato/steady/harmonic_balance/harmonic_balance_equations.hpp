@@ -54,7 +54,7 @@ class HarmonicBalanceEquations {
   HarmonicBalanceEquations(const Vector& stiffness, const Vector& holding, const std::vector<model::LawBetween>& laws)
       : stiffness_(stiffness), holding_(holding), sliders_(stiffness.size() - static_cast<Index>(laws.size())) {
     loops_.resize(static_cast<std::size_t>(sliders_));
-    for (const model::LawBetween& law : laws) laws_.emplace_back(*law.law);
+    for (const model::LawBetween& law : laws) laws_.emplace_back(*law.law, law.normal.value);
   }
 
   /// @param harmonics  place 0: the mean (unused without it); place 1 + i: order i, at least as many as unknown orders

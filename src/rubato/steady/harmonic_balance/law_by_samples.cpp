@@ -63,8 +63,9 @@ const std::vector<Complex>& SampleAngles::analyse(const double* values) {
   return spectrum_;
 }
 
-LawBySamples::LawBySamples(const model::Law& law)
+LawBySamples::LawBySamples(const model::Law& law, double normal)
     : law_(law),
+      normal_(normal),
       own_slopes_(dynamic_cast<const model::LawSlopes*>(&law)),
       memory_(law.memory_size()),
       least_forgotten_(own_slopes_ ? forgets : forgets_by_differences) {
@@ -93,7 +94,7 @@ void LawBySamples::pass(SampleAngles& angles, double angular_frequency, double m
   has_closed_ = true;
   if (memory_ == 0) {
     for (int i = 0; i < angles.count(); ++i) {
-      const model::LawPoint point{u_[i], rate_[i], 0.0, model::Side::right};
+      const model::LawPoint point{u_[i], rate_[i], 0.0, model::Side::right, normal_};
       const model::LawAnswer answer = law_.at(point, nullptr);
       f_[i] = answer.force;
       by_u_[i] = answer.by_u;
@@ -131,10 +132,11 @@ void LawBySamples::find_places(const Orders& orders, const Complex* coefficients
         if (step <= 1e-9 * width) break;  // u is flat there: to round-off
       }
       turn.point.t = angle / angular_frequency_;
+      turn.point.normal = normal_;
       places_.push_back(turn);
     }
     Place sample;
-    sample.point = {u_[at], rate_[at], width * i / angular_frequency_, model::Side::left};
+    sample.point = {u_[at], rate_[at], width * i / angular_frequency_, model::Side::left, normal_};
     sample.unit_vector = angles_->unit_vector(at);
     sample.sample = at;
     places_.push_back(sample);
@@ -165,6 +167,7 @@ void LawBySamples::close() {
   const Vector rest = start;
   model::LawPoint origin;
   origin.t = places_.front().point.t;
+  origin.normal = normal_;
   law_.advance(origin, rest.data(), places_.front().point, start.data());
   double last = HUGE_VAL;
   for (int period = 0;; ++period) {
@@ -224,7 +227,8 @@ double LawBySamples::dissipated() const {
   }
   const double width = 2.0 * pi / (angles_->count() * angular_frequency_);
   const auto point = [&](int i) {
-    return model::LawPoint{u_[i % angles_->count()], rate_[i % angles_->count()], width * i, model::Side::left};
+    return model::LawPoint{u_[i % angles_->count()], rate_[i % angles_->count()], width * i, model::Side::left,
+                           normal_};
   };
   for (int i = 0; i < angles_->count(); ++i) sum += law_.dissipated(point(i), nullptr, point(i + 1), nullptr);
   return sum;
@@ -349,7 +353,9 @@ void LawBySamples::differentiate() {
     Vector of_u(unknowns), of_rate(unknowns);
     set_motion(places_.front(), of_u, of_rate);
     const Vector rest = Vector::Zero(memory_);
-    step_slopes({}, rest.data(), places_.front().point);
+    model::LawPoint origin;
+    origin.normal = normal_;
+    step_slopes(origin, rest.data(), places_.front().point);
     for (Index row = 0; row < memory_; ++row)
       of_memory.col(row) = slopes_(0, row + 1) * of_u + slopes_(1, row + 1) * of_rate;
     for (std::size_t period = 0; period + 1 < started_.size(); ++period) carry(started_[period], of_memory, false);

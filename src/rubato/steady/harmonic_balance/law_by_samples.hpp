@@ -44,7 +44,8 @@ class SampleAngles {
 /// form. What is not exact is the sums: more samples tell.
 class LawBySamples {
  public:
-  explicit LawBySamples(const model::Law& law);
+  /// @param normal  what presses on it all along [N]; read by laws that take a normal force
+  explicit LawBySamples(const model::Law& law, double normal = 0.0);
 
   /// Finds the forces of the orders of the angles; those of u may be fewer.
   void pass(SampleAngles& angles, double angular_frequency, double mean, const Orders& orders,
@@ -98,6 +99,7 @@ class LawBySamples {
   void find_derivatives_of_forces();
 
   const model::Law& law_;
+  double normal_;
   const model::LawSlopes* own_slopes_;  ///< null: by differences
   Index memory_;
   double least_forgotten_;  ///< in a period, of what is not kept for ever

@@ -81,6 +81,7 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
   state.v.setZero();
   state.slider_force.setZero();
   state.memory.setZero();
+  if (system.has_normals()) system.set_stop_forces(state);
   system.set_law_forces(state, model::Side::right);
   const system::State at_rest = state;
   LinearResponse response = linear_response(system.stuck_stiffness(), system, excitation);
@@ -93,13 +94,14 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
     state.slider_force[i] =
         std::clamp(system.sliders()[static_cast<std::size_t>(i)].stiffness * system.relative_displacement(i, state.q),
                    -excitation.limits[i], excitation.limits[i]);
+  if (system.has_normals()) system.set_stop_forces(state);
   system.move_laws(at_rest, state);
   return state;
 }
 
 Vector natural_frequencies(const system::LocallyNonlinear& system) {
   const Vector free = numerics::all_modes(system.stiffness(), system.mass()).eigenvalues;
-  if (system.slider_count() == 0) return free.cwiseMax(0.0).cwiseSqrt();
+  if (!system.has_friction()) return free.cwiseMax(0.0).cwiseSqrt();
   const Vector stuck = numerics::all_modes(system.stuck_stiffness(), system.mass()).eigenvalues;
   Vector both(free.size() + stuck.size());
   both << free, stuck;

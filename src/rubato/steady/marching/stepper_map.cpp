@@ -31,11 +31,13 @@ Vector memory_lengths(const system::LocallyNonlinear& system) {
   for (Index j = 0; j < system.law_count(); ++j) {
     const model::Law& law = *system.laws()[static_cast<std::size_t>(j)].law;
     Vector memory = Vector::Zero(law.memory_size());
-    const model::LawAnswer at_rest = law.at({}, memory.data());
+    model::LawPoint rest;
+    rest.normal = 1e100;  // sticks: what its memory does then
+    const model::LawAnswer at_rest = law.at(rest, memory.data());
     for (Index i = 0; i < memory.size(); ++i) {
       constexpr double small = 1e-6;
       memory[i] = small;
-      const double length = std::abs((law.at({}, memory.data()).force - at_rest.force) / (small * at_rest.by_u));
+      const double length = std::abs((law.at(rest, memory.data()).force - at_rest.force) / (small * at_rest.by_u));
       memory[i] = 0.0;
       if (length > 0.0 && std::isfinite(length)) lengths[system.memory_of(j) + i] = length;
     }
