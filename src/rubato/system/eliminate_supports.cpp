@@ -58,7 +58,8 @@ SparseMatrix given_rows(const SparseMatrix& matrix, const Split& split) {
 std::vector<LoadTerm> split_loads(std::vector<ModelLoad>& loads, const Split& split) {
   std::vector<LoadTerm> on_given;
   for (ModelLoad& load : loads) {
-    LoadTerm of_free{{}, {}, load.term.law, load.term.source}, of_given = of_free;
+    LoadTerm of_free{{}, {}, load.term.law, load.term.source};
+    LoadTerm of_given = of_free;
     for (std::size_t i = 0; i < load.term.rows.size(); ++i) {
       const Index row = load.term.rows[i];
       LoadTerm& to = split.is_free(row) ? of_free : of_given;

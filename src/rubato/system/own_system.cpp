@@ -164,9 +164,9 @@ class OwnEquations final : public ConstrainedEquations {
 
 }  // namespace
 
-OwnSystem::OwnSystem(std::vector<std::string> coordinates, SparseMatrix mass, Vector q, Vector v,
+OwnSystem::OwnSystem(std::vector<std::string> coordinates, const SparseMatrix& mass, Vector q, Vector v,
                      std::vector<std::string> rows, std::vector<int> phase)
-    : coordinates_(std::move(coordinates)), rows_(std::move(rows)), mass_(std::move(mass)) {
+    : coordinates_(std::move(coordinates)), rows_(std::move(rows)), mass_(mass) {
   const Index n = size();
   if (mass_.rows() != n || mass_.cols() != n || q.size() != n || v.size() != n)
     throw InvalidInput(

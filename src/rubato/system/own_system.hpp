@@ -29,7 +29,7 @@ class OwnSystem : public ConstrainedSystem {
   /// @param rows         names of the constraints [c]
   /// @param phase        branches at the start
   /// Throws InvalidInput for sizes that do not fit, and for a coordinate without mass.
-  OwnSystem(std::vector<std::string> coordinates, SparseMatrix mass, Vector q, Vector v,
+  OwnSystem(std::vector<std::string> coordinates, const SparseMatrix& mass, Vector q, Vector v,
             std::vector<std::string> rows = {}, std::vector<int> phase = {});
 
   /// f [n] [N]: internal forces less external ones.
@@ -65,13 +65,13 @@ class OwnSystem : public ConstrainedSystem {
   /// constraints then forbid of the velocities is removed.
   virtual Passage pass(Index guard, State& state) const;
 
-  Index size() const override { return static_cast<Index>(coordinates_.size()); }
+  Index size() const final { return static_cast<Index>(coordinates_.size()); }
   const std::vector<std::string>& coordinates() const override { return coordinates_; }
   bool is_rotation(Index /*i*/) const override { return false; }
   bool is_flat() const override { return true; }
   void retract(const Vector& q, const Vector& dq, Vector& out) const override { out = q + dq; }
   void difference(const Vector& q, const Vector& to, Vector& dq) const override { dq = to - q; }
-  Index constraint_count() const override { return static_cast<Index>(rows_.size()); }
+  Index constraint_count() const final { return static_cast<Index>(rows_.size()); }
   const std::vector<std::string>& rows() const override { return rows_; }
   const State& start() const override { return start_; }
   const SparseMatrix& mass() const override { return mass_; }

@@ -3,7 +3,6 @@
 #include <rubato/model/joints/plane_point.hpp>
 
 #include <cmath>
-#include <utility>
 
 namespace rubato::model {
 
@@ -39,7 +38,7 @@ struct PlaneLength {
       put(i, i + 3, -weight);
       put(i + 3, i + 3, weight);
     }
-    for (const auto& [i, j] : {std::pair{0, 1}, {3, 4}, {0, 4}, {1, 3}}) put(i, j, 0.0);
+    put(0, 1, 0.0), put(3, 4, 0.0), put(0, 4, 0.0), put(1, 3, 0.0);
     put(0, 2, -ay), put(1, 2, ax), put(3, 2, ay), put(4, 2, -ax);
     put(0, 5, by), put(1, 5, -bx), put(3, 5, -by), put(4, 5, bx);
     put(2, 5, -(ay * b.arm_y + ax * b.arm_x));
