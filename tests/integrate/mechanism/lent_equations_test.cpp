@@ -64,12 +64,8 @@ void expect_same_bits(const system::Mechanism& mechanism, double tolerance, doub
   EXPECT_EQ(lent.state.rubbing, own.state.rubbing);
 }
 
-TEST(LentEquations, LeaveAMarchThatLocksItsBits) {
-  expect_same_bits(system::Mechanism(testing::locking_bars(testing::LockingLaw::latch, 2).mechanism), 1e-4, 1.6);
-}
-
-// The step lets the friction follow more than the multipliers: no one else may.
-TEST(LentEquations, LeaveFrictionThatFollowsReactionsItsBits) {
+/// A bar whose pin rubs by what it carries.
+system::Mechanism rubbing_bar() {
   const auto study = io::read_study_text(R"toml(
 [[body]]
 name = "bar"
@@ -91,7 +87,32 @@ step = { tolerance = 1e-4 }
 duration = 5.0
 )toml",
                                          "study.toml");
-  expect_same_bits(system::Mechanism(model::build_mechanism(study.model, {})), 1e-4, 5.0);
+  return system::Mechanism(model::build_mechanism(study.model, {}));
+}
+
+TEST(LentEquations, LeaveAMarchThatLocksItsBits) {
+  expect_same_bits(system::Mechanism(testing::locking_bars(testing::LockingLaw::latch, 2).mechanism), 1e-4, 1.6);
+}
+
+// The step lets the friction follow more than the multipliers: no one else may.
+TEST(LentEquations, LeaveFrictionThatFollowsReactionsItsBits) { expect_same_bits(rubbing_bar(), 1e-4, 5.0); }
+
+TEST(LentEquations, HaveNoLagOfReactionsAfterATryThatFailed) {
+  const system::Mechanism mechanism = rubbing_bar();
+  system::MechanismEquations equations(mechanism);
+  NewtonPlan newton;
+  newton.projects_velocities = true;
+  const auto stepper = make_stepper(make_method("generalized_alpha", {{"rho_inf", 0.8}}), equations, newton);
+  std::vector<std::string> warnings;
+  system::State state = assembled_start({}, mechanism, warnings), to = state;
+  const Vector multiplier = Vector::Ones(mechanism.constraint_count());
+  equations.go_to(state, model::Side::right);
+  const double limit = equations.friction_limit(0, multiplier);
+  state.reaction_lag = 5.0 * multiplier;
+  constexpr double endless = 1e200;
+  EXPECT_NE(stepper->attempt(state, endless, endless, to).outcome, StepOutcome::accepted);
+  equations.go_to(state, model::Side::right);
+  EXPECT_EQ(equations.friction_limit(0, multiplier), limit);
 }
 
 }  // namespace
