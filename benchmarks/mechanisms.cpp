@@ -2,10 +2,10 @@
 // converged run, and time for a step of chains and of a large flexible mechanism.
 #include <rubato/integrate/adaptive_march.hpp>
 #include <rubato/integrate/catalogue.hpp>
+#include <rubato/integrate/constrained/consistent_start.hpp>
+#include <rubato/integrate/constrained/constrained_space.hpp>
+#include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/driver.hpp>
-#include <rubato/integrate/mechanism/mechanism_space.hpp>
-#include <rubato/integrate/mechanism/mechanism_start.hpp>
-#include <rubato/integrate/mechanism/mechanism_stepper.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
 
 #include <measure.hpp>
@@ -43,7 +43,7 @@ Ran run(const system::Mechanism& mechanism, const Choice& choice, double end, Ob
   NewtonPlan newton;
   newton.projects_velocities = is_automatic;
   newton.avoids_singular_ends = choice.kind != Choice::Kind::fixed;
-  const auto stepper = make_mechanism_stepper(choice.method, mechanism, newton);
+  const auto stepper = make_stepper(choice.method, mechanism, newton);
   system::MechanismEquations equations(mechanism);
   Ran ran;
   ran.state = make_consistent(equations, mechanism.start()).state;
@@ -202,7 +202,7 @@ void chains() {
   for (const bool in_space : {false, true})
     for (const int count : {10, 100, 1000}) {
       const system::Mechanism mechanism(in_space ? benchmarks::space_chain(count) : benchmarks::plane_chain(count));
-      const auto stepper = make_mechanism_stepper(Choice{}.method, mechanism);
+      const auto stepper = make_stepper(Choice{}.method, mechanism);
       system::MechanismEquations equations(mechanism);
       const double h = 1e-3, end = 0.2;
       system::State start = make_consistent(equations, mechanism.start()).state;
@@ -225,7 +225,7 @@ void chains() {
 void flexible() {
   for (const int count : {1000, 10000}) {
     const system::Mechanism mechanism(benchmarks::flexible_pendulum(count));
-    const auto stepper = make_mechanism_stepper(Choice{}.method, mechanism);
+    const auto stepper = make_stepper(Choice{}.method, mechanism);
     system::MechanismEquations equations(mechanism);
     const double h = 1e-3, end = 0.05;
     const system::State start = make_consistent(equations, mechanism.start()).state;
