@@ -57,10 +57,10 @@ class LawProblem {
   std::vector<model::LawPoint> start_, end_;   // of each law
   std::vector<model::LawAnswer> answer_;       // of each law, at end_
   std::vector<double> reach_;                  // the largest displacement behind u of each law: its round-off
-  std::vector<model::Share> joined_;           // what laws join, those of law j from joined_start_[j]
-  std::vector<std::size_t> joined_start_;
   Vector first_u_, first_v_, whole_u_, whole_v_, known_;  // of a motion that is made in parts
-  bool slopes_are_bounded_;  // else a solution far away may be none of the motion from the start
+  bool slopes_are_bounded_;           // else a solution far away may be none of the motion from the start
+  std::vector<model::Share> joined_;  // what laws join, those of law j from joined_start_[j]
+  std::vector<std::size_t> joined_start_;
   Index worst_ = -1;
 };
 
