@@ -136,9 +136,10 @@ bool LawProblem::solve_boxes(const system::State& from, Vector& force) {
 double LawProblem::evaluate(const Vector& force, system::State& to) {
   u_ = u_free_;
   v_ = v_free_;
+  const Index first = system_.has_normals() ? 0 : boxes_;  // stops may press on laws
   // Written out: calls of a product cost more than the product where there are a few laws.
   for (Index j = 0; j < m_; ++j)
-    for (Index i = boxes_; i < m_; ++i) {
+    for (Index i = first; i < m_; ++i) {
       u_[i] -= compliance_(i, j) * force[j];
       v_[i] -= velocity_compliance_(i, j) * force[j];
     }

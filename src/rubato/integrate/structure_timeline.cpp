@@ -201,8 +201,8 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
     }
     case Watch::law: {
       constexpr double least = 1e-4;  // of the step, for the slope of the guard at its end
-      const double end = guard_of_law(guard, from, path, 1.0);
-      return {end, (end - guard_of_law(guard, from, path, 1.0 - least)) / (least * path.h)};
+      const double end = guard_of_law(guard, from, to, 1.0);
+      return {end, (end - guard_of_law(guard, from, to, 1.0 - least)) / (least * path.h)};
     }
     case Watch::nothing:
       break;
@@ -210,18 +210,24 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
   return {1.0, 0.0};
 }
 
-double StructureTimeline::guard_of_law(Index contact, const system::State& from, const Path& path, double share) const {
+double StructureTimeline::guard_of_law(Index contact, const system::State& from, const system::State& to,
+                                       double share) const {
+  const Path path = path_of(contact, from, to);
   // A travel of round-off turns at random.
   const double size = size_of(system_, contact, from.q);
   if (std::abs(path.u1 - path.u0) + path.h * std::abs(path.v1) <= round_off * size) return 1.0;
   const Index law = contact - system_.first_law();
-  model::LawPoint start{path.u0, path.v0, from.t, model::Side::right};
+  model::LawPoint start = system_.law_point(law, from, model::Side::right);
+  model::LawPoint end = system_.law_point(law, to, model::Side::left);
   const double acceleration = system_.relative_displacement(contact, from.auxiliary_acceleration);
   if (std::abs(start.rate) <= 2.0 * resolution_ * std::abs(acceleration))
     start.rate = std::copysign(std::numeric_limits<double>::min(), acceleration);
-  const model::LawPoint end{path.displacement(share), path.velocity(share), from.t + share * path.h, model::Side::left};
-  return system_.laws()[static_cast<std::size_t>(law)].law->guard(start, from.memory.data() + system_.memory_of(law),
-                                                                  end, 2.0 * resolution_);
+  end.u = path.displacement(share);
+  end.rate = path.velocity(share);
+  end.t = from.t + share * path.h;
+  end.normal = start.normal + share * (end.normal - start.normal);
+  return system_.laws()[static_cast<std::size_t>(law)].law->guard(
+      start, from.memory.data() + system_.memory_of(law), end, 2.0 * resolution_);
 }
 
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {
@@ -267,7 +273,7 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
       });
     }
     case Watch::law:
-      return root([&](double s) { return guard_of_law(contact, from, path, s); });
+      return root([&](double s) { return guard_of_law(contact, from, to, s); });
     case Watch::nothing:
       break;
   }

@@ -46,7 +46,7 @@ class StructureTimeline final : public Timeline {
   Watch watch_of_stop(Index contact, const system::State& from) const;
   double share_of(Index contact, const system::State& from, const system::State& to) const;
   const model::Stop& stop_of(Index contact) const;
-  double guard_of_law(Index contact, const system::State& from, const Path& path, double share) const;
+  double guard_of_law(Index contact, const system::State& from, const system::State& to, double share) const;
   bool has_ended_at(Index contact, const system::State& from, const system::State& to);
 
   const system::LocallyNonlinear& system_;

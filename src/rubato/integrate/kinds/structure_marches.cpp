@@ -69,21 +69,27 @@ void StructureMarches::take_equal_steps(const TransientRequest& request, MarchPl
 
 void StructureMarches::plan_events(const std::string& title, const model::StepDescription& description,
                                    const MarchPlan& plan, StepPlan& step) const {
-  // Stages of such a step follow a law with a memory without a turn, and both solutions of the pair err alike.
-  if (std::holds_alternative<RungeKutta>(plan.method.formula))
-    for (const model::LawBetween& law : system_.laws())
-      if (law.law->memory_size() > 0)
-        throw InvalidInput(
-            description.where,
-            fmt::format("{}{} with steps that choose themselves does not see where the motion of \"{}\" turns within "
-                        "a step, nor does its error estimate; take \"generalized_alpha\", or equal steps",
-                        title, plan.method.name, law.name));
   // A pair is of so high an order that a transition within a step is all of its error, and its estimate does not see
-  // it.
+  // it; nor does it see what the memory of a law loses in a step.
   const bool is_pair = std::holds_alternative<RungeKutta>(plan.method.formula);
+  bool has_memory = false;
+  for (const model::LawBetween& law : system_.laws()) {
+    has_memory = has_memory || law.law->memory_size() > 0;
+    if (is_pair && !law.law->is_exact_between_guards())
+      throw InvalidInput(description.where,
+                         fmt::format("{}{} with steps that choose themselves does not see what the memory of \"{}\" "
+                                     "loses within a step, nor does its error estimate; take \"generalized_alpha\", or "
+                                     "equal steps",
+                                     title, plan.method.name, law.name));
+    if (is_pair && law.law->memory_size() > 0 && !description.locate_events.value_or(true))
+      throw InvalidInput(description.where,
+                         fmt::format("{}events = \"pass\" lets the steps of {} pass over the turns of \"{}\", which its "
+                                     "error estimate does not see; leave it out",
+                                     title, plan.method.name, law.name));
+  }
   step.locate_sliders = is_pair || description.locate_events.has_value();
-  step.locate_events =
-      description.locate_events.value_or(system_.stop_count() > 0 || (is_pair && system_.slider_count() > 0));
+  step.locate_events = description.locate_events.value_or(
+      system_.stop_count() > 0 || (is_pair && (system_.slider_count() > 0 || has_memory)));
 }
 
 double StructureMarches::largest_step(const std::string& title, const model::StepDescription& description,

@@ -42,9 +42,10 @@ void fields(auto& visit, StepDescription& step) {
                  "tenths of the stability limit; while a formula swings, at most a sixth of its swing"});
   visit.word(
       "events", step.locate_events, {{"locate", true}, {"pass", false}},
-      {.says = "end a step where a slider sticks or slips anew and where a stop closes or opens, or pass over it",
-       .unless = "locate stops, and sliders with the pairs bogacki_shampine and dormand_prince, whose estimate "
-                 "does not see them"});
+      {.says = "end a step where a slider sticks or slips anew, where a stop closes or opens and where a law with a "
+               "memory turns, or pass over it",
+       .unless = "locate stops, and sliders and laws with the pairs bogacki_shampine and dormand_prince, whose "
+                 "estimate does not see them"});
   visit.quantity_or_word(
       "reference", step.reference, step.reference_is_initial, "initial",
       {.unit = "m sqrt(kg)",
