@@ -226,8 +226,8 @@ double StructureTimeline::guard_of_law(Index contact, const system::State& from,
   end.rate = path.velocity(share);
   end.t = from.t + share * path.h;
   end.normal = start.normal + share * (end.normal - start.normal);
-  return system_.laws()[static_cast<std::size_t>(law)].law->guard(
-      start, from.memory.data() + system_.memory_of(law), end, 2.0 * resolution_);
+  return system_.laws()[static_cast<std::size_t>(law)].law->guard(start, from.memory.data() + system_.memory_of(law),
+                                                                  end, 2.0 * resolution_);
 }
 
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {

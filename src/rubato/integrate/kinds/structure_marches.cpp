@@ -82,14 +82,15 @@ void StructureMarches::plan_events(const std::string& title, const model::StepDe
                                      "equal steps",
                                      title, plan.method.name, law.name));
     if (is_pair && law.law->memory_size() > 0 && !description.locate_events.value_or(true))
-      throw InvalidInput(description.where,
-                         fmt::format("{}events = \"pass\" lets the steps of {} pass over the turns of \"{}\", which its "
-                                     "error estimate does not see; leave it out",
-                                     title, plan.method.name, law.name));
+      throw InvalidInput(
+          description.where,
+          fmt::format("{}events = \"pass\" lets the steps of {} pass over the turns of \"{}\", which its "
+                      "error estimate does not see; leave it out",
+                      title, plan.method.name, law.name));
   }
   step.locate_sliders = is_pair || description.locate_events.has_value();
-  step.locate_events = description.locate_events.value_or(
-      system_.stop_count() > 0 || (is_pair && (system_.slider_count() > 0 || has_memory)));
+  step.locate_events = description.locate_events.value_or(system_.stop_count() > 0 ||
+                                                          (is_pair && (system_.slider_count() > 0 || has_memory)));
 }
 
 double StructureMarches::largest_step(const std::string& title, const model::StepDescription& description,
