@@ -54,6 +54,7 @@ class StructureNewtonEquations final : public system::ConstrainedEquations {
         contact_force_(s_.contact_count()),
         by_u_(s_.contact_count()),
         by_rate_(s_.contact_count()),
+        by_normal_(Vector::Zero(s_.contact_count())),
         load_(s_.size()) {
     std::vector<system::SaddleMatrix::Entry> entries;
     for (Index i = 0; i < s_.size(); ++i)
@@ -92,12 +93,13 @@ class StructureNewtonEquations final : public system::ConstrainedEquations {
     add(s_.damping(), weights.damping);
     add(s_.stiffness(), weights.stiffness);
     for (Index i = 0; i < s_.contact_count(); ++i) {
-      const double slope = weights.stiffness * by_u_[i] + weights.damping * by_rate_[i];
-      const auto [first, second] = s_.contacts()[static_cast<std::size_t>(i)];
-      add_entry(first, first, slope);
-      add_entry(second, second, slope);
-      add_entry(first, second, -slope);
-      add_entry(second, first, -slope);
+      add_slope(i, i, slope_of(i, weights));
+      // What presses on a law, and on what presses on it: the tangent is not symmetric there.
+      double share = by_normal_[i];
+      for (Index by = presser_of(i); share != 0.0 && by >= 0; by = presser_of(by)) {
+        add_slope(i, by, share * slope_of(by, weights));
+        share *= by_normal_[by];
+      }
     }
     saddle_.end(1.0);
   }
@@ -111,6 +113,21 @@ class StructureNewtonEquations final : public system::ConstrainedEquations {
   }
 
  private:
+  double slope_of(Index contact, const Weights& weights) const {
+    return weights.stiffness * by_u_[contact] + weights.damping * by_rate_[contact];
+  }
+  Index presser_of(Index contact) const {
+    return contact < s_.first_law() ? -1 : s_.normal_contact(contact - s_.first_law());
+  }
+  /// Of the force of one contact by the motion of another.
+  void add_slope(Index of, Index by, double slope) {
+    const auto [first, second] = s_.contacts()[static_cast<std::size_t>(of)];
+    const auto [to_first, to_second] = s_.contacts()[static_cast<std::size_t>(by)];
+    add_entry(first, to_first, slope);
+    add_entry(second, to_second, slope);
+    add_entry(first, to_second, -slope);
+    add_entry(second, to_first, -slope);
+  }
   void add_entry(Index i, Index j, double value) {
     if (i != ground && j != ground) saddle_.values()[saddle_.slot(i, j)] += value;
   }
@@ -143,12 +160,14 @@ class StructureNewtonEquations final : public system::ConstrainedEquations {
     }
     if (moved) moved->memory.resize(s_.memory_size());
     memory_.resize(s_.memory_size());
-    for (Index j = 0; j < s_.law_count(); ++j) {
+    for (const Index j : s_.law_order()) {
       const Index i = s_.first_law() + j, place = s_.memory_of(j);
+      model::LawPoint end = s_.law_point(j, to, model::Side::left);
+      end.normal = s_.normal_force(j, to, contact_force_, model::Side::left);
       const auto answer = s_.laws()[static_cast<std::size_t>(j)].law->advance(
-          s_.law_point(j, from_, model::Side::right), from_.memory.data() + place,
-          s_.law_point(j, to, model::Side::left), memory_.data() + place);
+          s_.law_point(j, from_, model::Side::right), from_.memory.data() + place, end, memory_.data() + place);
       contact_force_[i] = answer.force;
+      by_normal_[i] = answer.by_normal;
       by_u_[i] = answer.by_u;
       by_rate_[i] = answer.by_rate;
     }
@@ -161,7 +180,7 @@ class StructureNewtonEquations final : public system::ConstrainedEquations {
   system::State from_;
   const system::State* state_ = nullptr;
   model::Side side_ = model::Side::left;
-  Vector contact_force_, by_u_, by_rate_, memory_, load_;
+  Vector contact_force_, by_u_, by_rate_, by_normal_, memory_, load_;
 };
 
 inline std::unique_ptr<system::ConstrainedEquations> StructureByNewton::equations() const {
