@@ -252,7 +252,8 @@ StepReport LawProblem::solve(const system::State& from, system::State& to) {
   numerics::NewtonOutcome outcome = iterate(from, to, false, system_.has_normals() ? better : fair);
   if (outcome != numerics::NewtonOutcome::converged) {
     const Index worst = worst_;
-    bool is_solved = slopes_are_bounded_ && solve_by_parts(from, to);
+    // Else a solution far away may be none of the motion from the start; the forces that press are near.
+    bool is_solved = (slopes_are_bounded_ || system_.has_normals()) && solve_by_parts(from, to);
     if (!is_solved && system_.has_normals()) {
       force_ = from.slider_force;
       outcome = iterate(from, to, false, fair);
@@ -283,7 +284,7 @@ bool LawProblem::solve_by_parts(const system::State& from, system::State& to) {
   }
   first_u_.noalias() += compliance_ * known_;
   first_v_.noalias() += velocity_compliance_ * known_;
-  double reached = 0.0, part = 1.0;
+  double reached = 0.0, part = slopes_are_bounded_ ? 1.0 : 0.25;
   while (reached < 1.0 && part >= least_part) {
     const double share = std::min(1.0, reached + part);
     u_free_ = share < 1.0 ? first_u_ + share * (whole_u_ - first_u_) : whole_u_;
