@@ -18,7 +18,6 @@ def verdict(count, readme):
             (folder / f"part{i}.hpp").touch()
         if readme:
             (folder / "README.md").write_text(readme)
-        subprocess.run(["git", "init", "-q", name], check=True)
         return subprocess.run([sys.executable, judge, name], capture_output=True, text=True)
 
 
