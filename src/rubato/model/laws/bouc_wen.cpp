@@ -361,7 +361,8 @@ std::shared_ptr<const Law> make(const LawDescription& description, const numeric
 std::string doubt(const LawDescription& description, const numerics::Parameters& parameters) {
   const double beta = evaluate(description.values[3], parameters, "beta");
   const double gamma = evaluate(description.values[4], parameters, "gamma");
-  if (!(std::abs(gamma) > beta)) return {};
+  constexpr double rounded = 1e-6;  // what numbers of a few digits make of |gamma| = beta
+  if (!(std::abs(gamma) > beta * (1.0 + rounded))) return {};
   return fmt::format(
       "gamma is {:.6g} and beta {:.6g}: where the size of gamma exceeds beta, small cycles about a bias "
       "make energy, which no material does; take |gamma| <= beta",
