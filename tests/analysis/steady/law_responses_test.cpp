@@ -119,6 +119,36 @@ angular_frequency = [0.5, 2.0]
   }
 }
 
+// A slider that a law presses is as stiff as one that a number presses while it sticks.
+TEST(LawResponses, StickInOneLimitWherePressedByALaw) {
+  const MemorySink run = run_study(study(R"(
+[[nonlinear_spring]]
+name = "press"
+between = ["mass", "ground"]
+force = "5.0 + 0*u"
+[[nonlinear_spring]]
+name = "pull"
+between = ["mass", "ground"]
+force = "-5.0 + 0*u"
+[[slider]]
+name = "rub"
+between = ["mass", "ground"]
+stiffness = 2.0
+friction_coefficient = 0.5
+normal_load = { law = "press" }
+)",
+                                         R"(
+type = "frequency_response"
+angular_frequency = [0.5, 2.0]
+solver = "time_marching"
+)"));
+  for (const auto& [row, w] : {std::pair<std::size_t, double>{0, 0.5}, {1, 2.0}}) {
+    EXPECT_NEAR(value_of(run, "frf.linear", "free_amplitude", "mass", row), 0.3 / std::hypot(w * w, 0.02 * w), 1e-9);
+    EXPECT_NEAR(value_of(run, "frf.linear", "stuck_amplitude", "mass", row), 0.3 / std::hypot(2.0 - w * w, 0.02 * w),
+                1e-9);
+  }
+}
+
 TEST(LawResponses, OfDamperCurvesAreRefused) {
   const PreparedStudy prepared(study(foot + R"(
 [[slider]]

@@ -64,6 +64,9 @@ system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system
   parts.damping = system.free_damping();
   parts.stiffness = system.free_stiffness();
   parts.sliders = system.sliders();
+  for (const model::LawBetween& law : system.laws())
+    if (const double stiffness = law.law->sticking_stiffness(); stiffness > 0.0)
+      parts.sliders.push_back({law.name, law.first, law.second, stiffness, 0.0});
   parts.stops = system.stops();
   parts.loads = system.loads();
   parts.start.q = system.start().q;
@@ -71,6 +74,12 @@ system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system
   parts.coordinates = system.coordinates();
   parts.reference = system.reference();
   return system::LocallyNonlinear(std::move(parts));
+}
+
+StuckSliders linear_limit(const system::LocallyNonlinear& system, bool stuck) {
+  const auto laws = std::count_if(system.laws().begin(), system.laws().end(),
+                                  [](const model::LawBetween& law) { return law.law->sticking_stiffness() > 0.0; });
+  return StuckSliders(static_cast<std::size_t>(system.slider_count() + laws), stuck);
 }
 
 system::State nearer_linear_limit(const system::LocallyNonlinear& system, const system::Excitation& excitation) {

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <rubato/steady/assembled_stiffness.hpp>
 #include <rubato/system/excitation.hpp>
 #include <rubato/system/state.hpp>
 
 namespace rubato::steady {
 
-/// The system with the slopes of its laws at rest in K and C, and without the laws and their forces at rest.
+/// The system with the slopes of its laws at rest in K and C, and without the laws and their forces at rest. Laws that
+/// stick are sliders behind the others.
 system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system);
+/// One of its two linear limits, for all sliders of that.
+StuckSliders linear_limit(const system::LocallyNonlinear& system, bool stuck);
 
 /// The state at phase zero of the linear response that is nearer to the response with friction: with all sliders stuck
 /// and without force at rest, where that asks of no slider more than twice its limit, else without sliders. Its slider

@@ -44,11 +44,11 @@ LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSlid
 }
 
 LinearResponse free_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
-  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), false), std::move(request), sweep};
+  return {system, linear_limit(system, false), std::move(request), sweep};
 }
 
 LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
-  return {system, StuckSliders(static_cast<std::size_t>(system.slider_count()), true), std::move(request), sweep};
+  return {system, linear_limit(system, true), std::move(request), sweep};
 }
 
 void LinearResponse::forget() {
