@@ -69,6 +69,7 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
       trial_force_(m_),
       u_(m_),
       v_(m_),
+      size_(m_),
       start_(static_cast<std::size_t>(system.law_count())),
       end_(start_),
       answer_(start_.size()),
@@ -138,10 +139,13 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
   v_ = v_free_;
   const Index first = system_.has_normals() ? 0 : boxes_;  // stops may press on laws
   // Written out: calls of a product cost more than the product where there are a few laws.
+  size_.setZero();
   for (Index j = 0; j < m_; ++j)
     for (Index i = first; i < m_; ++i) {
-      u_[i] -= compliance_(i, j) * force[j];
+      const double change = compliance_(i, j) * force[j];
+      u_[i] -= change;
       v_[i] -= velocity_compliance_(i, j) * force[j];
+      size_[i] += std::abs(change);
     }
   double largest = 0.0;
   for (std::size_t j = 0; j < answer_.size(); ++j) {
@@ -150,10 +154,10 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
     end_[j].rate = v_[i];
     if (system_.has_normals()) press(static_cast<Index>(j), force);
     answer_[j] = system_.laws()[j].law->advance(start_[j], memory_ + place, end_[j], to.memory.data() + place);
-    const double round_off =
-        epsilon * (std::abs(answer_[j].force) + std::abs(force[i]) + std::abs(answer_[j].by_u) * reach_[j] +
-                   std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])) +
-                   std::abs(answer_[j].by_normal * end_[j].normal));
+    const double round_off = epsilon * (std::abs(answer_[j].force) + std::abs(force[i]) +
+                                        std::abs(answer_[j].by_u) * (reach_[j] + size_[i]) +
+                                        std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])) +
+                                        std::abs(answer_[j].by_normal * end_[j].normal));
     const double error = std::abs(answer_[j].force - force[i]);
     if (!std::isfinite(error)) {
       worst_ = i;

@@ -53,6 +53,7 @@ class LawProblem {
   ContactProblem linearised_, boxes_alone_;
   Vector u_free_, v_free_, trial_, penetration_, box_trial_, box_penetration_;
   Vector force_, next_, trial_force_, u_, v_;  // of all contacts
+  Vector size_;                                // of what forces do to u, all of it added: its round-off
   const double* memory_ = nullptr;             // of the laws at the start of the step
   std::vector<model::LawPoint> start_, end_;   // of each law
   std::vector<model::LawAnswer> answer_;       // of each law, at end_
