@@ -22,13 +22,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 import numpy as np  # noqa: E402
 
-from cross_checks import linear_laws  # noqa: E402
+from cross_checks import linear_laws, pressed_sliders  # noqa: E402
 from cross_checks.same_tables import differences  # noqa: E402
 from random_structure.toml import write_toml  # noqa: E402
 from study import Study  # noqa: E402
 
 SECONDS = 6  # of processor time for a run of the command
-WAYS = {"formulas": linear_laws.as_formulas, "hysteresis": linear_laws.as_hysteresis, "nothing": linear_laws.beside_nothing}
+WAYS = {"formulas": linear_laws.as_formulas, "hysteresis": linear_laws.as_hysteresis, "nothing": linear_laws.beside_nothing,
+        "pressed by time": pressed_sliders.by_time, "pressed by a law": pressed_sliders.by_law}
 OUTCOMES = ["agrees", "differs", "refused", "failed", "skipped"]
 
 
@@ -97,7 +98,7 @@ def judged(command, tables, parts, folder):
         other = rewrite(plain, parts)
         if other is None:
             continue
-        code, said = run(command, other, folder, way)
+        code, said = run(command, other, folder, way.replace(" ", "_"))
         if code in (-signal.SIGXCPU, -signal.SIGKILL):
             out.append((way, "all", "all", "skipped", f"more than {SECONDS} s"))
             continue
@@ -107,15 +108,15 @@ def judged(command, tables, parts, folder):
         if code not in (0, 3):
             out.append((way, "all", "all", "differs", f"exit status {code}: {said.strip()[-300:]}"))
             continue
-        for part in plain["analysis"]:
+        for part in other["analysis"]:
             name, kind = part["name"], part["type"]
             failures = [re.search(rf'analysis "{re.escape(name)}" failed: ([^\n]*)', text) for text in (told, said)]
             if any(failures):
                 same = all(failures)
                 out.append((way, name, kind, "failed" if same else "differs", " | ".join(f.group(1)[:200] if f else "answers" for f in failures)))
                 continue
-            found = differences(folder / "parts", folder / way, name, kind, allowed_of(tables, part), stiffness,
-                                ("not_converged", "quasi_periodic") if part.get("solver") == "time_marching" else ())
+            found = differences(folder / "parts", folder / way.replace(" ", "_"), name, kind, allowed_of(tables, part), stiffness,
+                                ("not_converged", "quasi_periodic", "subharmonic") if part.get("solver") == "time_marching" else ())
             rows = next((f for f in found if " rows and " in f[0]), None)
             if rows and kind == "transient" and "joint" in tables and not isinstance(part["step"], dict):
                 out.append((way, name, kind, "skipped", f"equal steps are divided otherwise: {rows[0]}"))
