@@ -47,7 +47,9 @@ class Builder {
     for (const HeldDescription& held : description_.held_forces)
       model_.held_forces.push_back({find(held.on, held.where, "a force is on"),
                                     number(held.value, fmt::format("the force on \"{}\": held", held.on))});
-    for (const DistributedForceDescription& force : description_.distributed_forces) take_distributed_force(force);
+    for (const DistributedForceDescription& force : description_.distributed_forces)
+      model_.distributed_forces.push_back(
+          build_distributed_force(force, lines_, model_.structure.dimension, parameters_));
     take_displacements();
     take_prescribed();
     if (description_.gravity) take_gravity(*description_.gravity);
@@ -372,44 +374,6 @@ class Builder {
     if (shares.empty())
       throw InvalidInput(law.shares_where, fmt::format("{}: no coordinate that moves has a share in its u", part));
     return shares;
-  }
-
-  void take_distributed_force(const DistributedForceDescription& description) {
-    const std::string part = fmt::format("the distributed force on \"{}\"", description.on);
-    const auto is_meant = [&](const NamedLine& line) { return line.name == description.on; };
-    auto found = std::find_if(lines_.begin(), lines_.end(),
-                              [&](const NamedLine& line) { return is_meant(line) && line.has_own_name; });
-    if (found == lines_.end()) {
-      found = std::find_if(lines_.begin(), lines_.end(), is_meant);
-      if (found != lines_.end() && std::find_if(std::next(found), lines_.end(), is_meant) != lines_.end())
-        throw InvalidInput(description.where, fmt::format("a distributed force is on \"{}\", which a beam and a truss "
-                                                          "are; give the one that is meant a name",
-                                                          description.on));
-    }
-    if (found == lines_.end()) {
-      std::vector<std::string> names;
-      for (const NamedLine& line : lines_) names.push_back(line.name);
-      throw InvalidInput(description.where,
-                         fmt::format("a distributed force is on \"{}\", which is the name of no beam or truss{}",
-                                     description.on, suggestion(description.on, names)));
-    }
-    const auto wanted = static_cast<std::size_t>(model_.structure.dimension);
-    if (description.direction.size() != wanted)
-      throw InvalidInput(description.where, fmt::format("{}: direction takes {} numbers, as the positions of nodes do, "
-                                                        "got {}",
-                                                        part, wanted, description.direction.size()));
-    DistributedForce force{found->first, found->count, Axis::Zero(), law(description.law, part)};
-    for (std::size_t i = 0; i < wanted; ++i)
-      force.direction[static_cast<Index>(i)] = number(description.direction[i], part + ": direction");
-    const bool is_written = std::all_of(description.direction.begin(), description.direction.end(),
-                                        [](const Quantity& quantity) { return quantity.expression.empty(); });
-    // Parameters may turn a force off.
-    if (is_written && force.direction.isZero(0.0))
-      throw InvalidInput(description.where,
-                         fmt::format("{}: its direction has no length, and it would do nothing; give the direction in "
-                                     "which it pushes, such as {}",
-                                     part, wanted == 2 ? "[0, -1]" : "[0, 0, -1]"));
-    model_.distributed_forces.push_back(std::move(force));
   }
 
   void take_displacements() {

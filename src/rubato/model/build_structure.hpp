@@ -1,7 +1,6 @@
 #pragma once
 
-#include <rubato/model/description.hpp>
-#include <rubato/model/structure.hpp>
+#include <rubato/model/model.hpp>
 
 #include <string>
 #include <unordered_set>
@@ -42,5 +41,10 @@ BuiltStructure build_structure(const StructureDescription& description, const nu
 
 /// Throws InvalidInput for a name that cannot head a column of results.
 void refuse_unfit_name(const std::string& name, const Location& where);
+
+/// A distributed force on the beam or truss that its description names. Throws InvalidInput.
+DistributedForce build_distributed_force(const DistributedForceDescription& description,
+                                         const std::vector<NamedLine>& lines, int dimension,
+                                         const numerics::Parameters& parameters);
 
 }  // namespace rubato::model
