@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace rubato::system {
 namespace {
@@ -60,6 +61,11 @@ void LocallyNonlinear::order_laws() {
     if (law.normal.stop >= 0) normal_contact_[j] = slider_count() + law.normal.stop;
     if (law.normal.law >= 0) normal_contact_[j] = first_law() + law.normal.law;
     assert(normal_contact_[j] < contact_count());
+  }
+  if (!has_normals_) {
+    law_order_.resize(count);
+    std::iota(law_order_.begin(), law_order_.end(), Index{0});
+    return;
   }
   std::vector<char> is_placed(count, 0);
   const auto is_ready = [&](std::size_t j) {
