@@ -3,6 +3,7 @@
 #include <rubato/integrate/exact/exact_flow.hpp>
 #include <rubato/integrate/structure_timeline.hpp>
 
+#include "support/adaptive_run.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -34,44 +35,6 @@ struct Truth final : ExactVisitor {
   std::vector<Transition> transitions;
 };
 
-struct Watched final : Observer, TryLog {
-  bool accepted(const system::State&, const system::State& after) override {
-    states.push_back(after);
-    return true;
-  }
-  void tried(const StepTry& step_try) override { tries.push_back(step_try); }
-  std::vector<system::State> states;
-  std::vector<StepTry> tries;
-};
-
-struct Marched {
-  AdaptiveReport report;
-  Watched watched;
-};
-
-Marched run(const system::LocallyNonlinear& system, const std::string& name, double tolerance, bool locate,
-            double end) {
-  const Method method = make_method(name);
-  const auto stepper = make_stepper(method, system);
-  const auto estimator =
-      make_estimator(default_estimator(method, tolerance, system.stop_count() > 0), method, system, *stepper, end);
-  StepPlan plan;
-  plan.locate_events = locate;
-  plan.largest = end / 50.0;
-  Marched result;
-  system::State state = consistent_start(system, system.start());
-  result.report = march(*stepper, *estimator, plan, system, state, end, &result.watched, &result.watched);
-  EXPECT_EQ(result.report.march.end, MarchEnd::reached);
-  return result;
-}
-
-/// The distance of the nearest step's end from a time.
-double distance(const Marched& run, double t) {
-  double least = HUGE_VAL;
-  for (const auto& state : run.watched.states) least = std::min(least, std::abs(state.t - t));
-  return least;
-}
-
 class Slider : public ::testing::TestWithParam<std::string> {};
 
 // The flow between transitions is analytic and its transitions are found to round-off; a march of relative error e
@@ -81,9 +44,9 @@ TEST_P(Slider, ChangesItsStateAtTheEndsOfSteps) {
   const auto system = testing::single_mass(0.15);
   const Truth truth(system, end);
   ASSERT_GT(truth.transitions.size(), 15u);
-  const Marched marched = run(system, GetParam(), 1e-7, true, end);
+  const testing::AdaptiveRun marched = testing::run_adaptively(system, GetParam(), 1e-7, end);
   EXPECT_EQ(marched.report.events, static_cast<long>(truth.transitions.size()));
-  for (const Transition& transition : truth.transitions) EXPECT_LT(distance(marched, transition.t), 1e-6);
+  for (const Transition& transition : truth.transitions) EXPECT_LT(marched.distance(transition.t), 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Slider,
@@ -91,13 +54,13 @@ INSTANTIATE_TEST_SUITE_P(Methods, Slider,
                                            "dormand_prince"),
                          [](const auto& info) { return info.param; });
 
-double largest_error(const Marched& run, const system::LocallyNonlinear& system, double end) {
+double largest_error(const testing::AdaptiveRun& run, const system::LocallyNonlinear& system, double end) {
   std::vector<double> times;
-  for (const auto& state : run.watched.states) times.push_back(state.t);
+  for (const auto& state : run.states) times.push_back(state.t);
   const Truth truth(system, end, times);
   double largest = 0.0;
   for (std::size_t i = 0; i < times.size(); ++i)
-    largest = std::max(largest, (run.watched.states[i].q - truth.states[i].q).norm());
+    largest = std::max(largest, (run.states[i].q - truth.states[i].q).norm());
   return largest;
 }
 
@@ -112,13 +75,13 @@ TEST_P(Location, CostsNoAccuracyAndSparesThePairsRejections) {
   const double end = 30.0;
   const auto system = has_two_sliders ? testing::damper_model(10.0, 7.7, -8.0) : testing::single_mass(0.15);
   for (const double tolerance : {1e-3, 1e-4}) {
-    const Marched without = run(system, method, tolerance, false, end),
-                  with = run(system, method, tolerance, true, end);
+    const testing::AdaptiveRun without = testing::run_adaptively(system, method, tolerance, end, false),
+                               with = testing::run_adaptively(system, method, tolerance, end);
     EXPECT_EQ(without.report.events, 0);
     EXPECT_GT(with.report.events, 30);
     EXPECT_EQ(with.report.restarts, with.report.events);
     if (method == "generalized_alpha") {
-      const auto effort = [&](const Marched& run) {
+      const auto effort = [&](const testing::AdaptiveRun& run) {
         return largest_error(run, system, end) * std::pow(static_cast<double>(run.report.march.steps), 2);
       };
       EXPECT_LE(with.report.rejected, std::max(2l, without.report.rejected + 1)) << tolerance;
@@ -161,9 +124,8 @@ TEST(EventTry, LeavesNoTrace) {
   const auto estimator = make_estimator(LocalError{1e-3}, method, system, stepper, 20.0);
   StepPlan plan;
   plan.locate_events = true;
-  Watched watched;
+  testing::AdaptiveRun watched;
   system::State state = consistent_start(system, system.start());
-  watched.states.push_back(state);
   const AdaptiveReport report = march(stepper, *estimator, plan, system, state, 20.0, &watched, &watched);
   ASSERT_GT(report.event_tries, 100);
   std::size_t last = 0, start = 0;

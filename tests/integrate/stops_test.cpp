@@ -3,6 +3,7 @@
 #include <rubato/integrate/methods/alpha_step.hpp>
 #include <rubato/integrate/stability.hpp>
 
+#include "support/adaptive_run.hpp"
 #include "support/models.hpp"
 
 #include <gtest/gtest.h>
@@ -31,42 +32,6 @@ system::LocallyNonlinear flying_mass(double damping, bool is_between_two = false
   return system::LocallyNonlinear(std::move(parts));
 }
 
-struct Watched final : Observer, TryLog {
-  bool accepted(const system::State&, const system::State& after) override {
-    states.push_back(after);
-    return true;
-  }
-  void tried(const StepTry& step_try) override { tries.push_back(step_try); }
-  /// The end of a step that is nearest to a time.
-  double nearest(double t) const {
-    const auto is_nearer = [t](const auto& a, const auto& b) { return std::abs(a.t - t) < std::abs(b.t - t); };
-    return std::min_element(states.begin(), states.end(), is_nearer)->t;
-  }
-  std::vector<system::State> states;
-  std::vector<StepTry> tries;
-};
-
-struct Passage {
-  AdaptiveReport report;
-  Watched watched;
-  system::State state;
-};
-
-Passage run(const system::LocallyNonlinear& system, const std::string& name, double tolerance, double end) {
-  const Method method = make_method(name);
-  const auto stepper = make_stepper(method, system);
-  const auto estimator =
-      make_estimator(default_estimator(method, tolerance, system.stop_count() > 0), method, system, *stepper, end);
-  StepPlan plan;
-  plan.locate_events = true;
-  plan.largest = end / 50.0;
-  Passage result;
-  result.state = consistent_start(system, system.start());
-  result.report = march(*stepper, *estimator, plan, system, result.state, end, &result.watched, &result.watched);
-  EXPECT_EQ(result.report.march.end, MarchEnd::reached);
-  return result;
-}
-
 class Impact : public ::testing::TestWithParam<std::string> {};
 
 // Free flight is exact for every method, so that the gap closes at gap/v0 to the resolution, 1e-12 of the march, and
@@ -74,13 +39,13 @@ class Impact : public ::testing::TestWithParam<std::string> {};
 // the tolerance, which is relative to the displacement of the whole march (about 0.1 m; in contact v = omega u).
 TEST_P(Impact, LastsHalfAPeriodAndReversesTheSpeed) {
   const double end = 0.25, tolerance = 1e-6, omega = std::sqrt(k / m);
-  const Passage passage = run(flying_mass(0.0), GetParam(), tolerance, end);
+  const testing::AdaptiveRun passage = testing::run_adaptively(flying_mass(0.0), GetParam(), tolerance, end);
   EXPECT_EQ(passage.report.events, 2);
-  EXPECT_NEAR(passage.watched.nearest(gap / v0), gap / v0, 2e-12 * end);
+  EXPECT_NEAR(passage.nearest(gap / v0), gap / v0, 2e-12 * end);
   const double opening = gap / v0 + std::numbers::pi / omega, slack = 10.0 * tolerance * 0.1;
-  EXPECT_NEAR(passage.watched.nearest(opening), opening, slack / v0);
-  EXPECT_NEAR(passage.state.v[0], -v0, slack * omega);
-  EXPECT_NEAR(passage.state.q[0], gap - v0 * (end - opening), 2.0 * slack);
+  EXPECT_NEAR(passage.nearest(opening), opening, slack / v0);
+  EXPECT_NEAR(passage.end().v[0], -v0, slack * omega);
+  EXPECT_NEAR(passage.end().q[0], gap - v0 * (end - opening), 2.0 * slack);
 }
 
 // u = v0 exp(-d t) sin(w t)/w until the force, and with it u'', vanishes: tan(w t) = -2 d w/(w^2 - d^2).
@@ -90,22 +55,23 @@ TEST_P(Impact, OnADampedStopEndsWhereTheForceVanishes) {
   const double rebound = v0 * std::exp(-d * contact) * (std::cos(w * contact) - d / w * std::sin(w * contact));
   ASSERT_LT(rebound, -0.3 * v0);
   const double end = 0.25, tolerance = 1e-6, slack = 10.0 * tolerance * 0.1;
-  const Passage passage = run(flying_mass(c), GetParam(), tolerance, end);
+  const testing::AdaptiveRun passage = testing::run_adaptively(flying_mass(c), GetParam(), tolerance, end);
   EXPECT_EQ(passage.report.events, 2);
-  EXPECT_NEAR(passage.watched.nearest(gap / v0), gap / v0, 2e-12 * end);
-  EXPECT_NEAR(passage.watched.nearest(gap / v0 + contact), gap / v0 + contact, slack / v0);
-  EXPECT_NEAR(passage.state.v[0], rebound, slack * w);
-  for (const auto& state : passage.watched.states) EXPECT_GE(state.slider_force[0], 0.0);
+  EXPECT_NEAR(passage.nearest(gap / v0), gap / v0, 2e-12 * end);
+  EXPECT_NEAR(passage.nearest(gap / v0 + contact), gap / v0 + contact, slack / v0);
+  EXPECT_NEAR(passage.end().v[0], rebound, slack * w);
+  for (const auto& state : passage.states) EXPECT_GE(state.slider_force[0], 0.0);
 }
 
 // From one wall to the other and back: 2 (2 gap/v0 + pi/omega).
 TEST_P(Impact, BetweenTwoStopsIsPeriodic) {
   const double period = 2.0 * (2.0 * gap / v0 + std::numbers::pi / std::sqrt(k / m)), tolerance = 1e-6;
-  const Passage passage = run(flying_mass(0.0, true), GetParam(), tolerance, 2.0 * period);
+  const testing::AdaptiveRun passage =
+      testing::run_adaptively(flying_mass(0.0, true), GetParam(), tolerance, 2.0 * period);
   EXPECT_EQ(passage.report.events, 8);
   const double slack = 10.0 * tolerance * 0.1;
-  EXPECT_NEAR(passage.state.q[0], 0.0, 4.0 * slack);
-  EXPECT_NEAR(passage.state.v[0], v0, slack * std::sqrt(k / m));
+  EXPECT_NEAR(passage.end().q[0], 0.0, 4.0 * slack);
+  EXPECT_NEAR(passage.end().v[0], v0, slack * std::sqrt(k / m));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Impact,
@@ -123,8 +89,9 @@ TEST(HardStop, ReboundsWithinTheToleranceHoweverLooseItIs) {
     const double rebound = v0 * std::exp(-d * contact) * (std::cos(w * contact) - d / w * std::sin(w * contact));
     for (const char* method : {"generalized_alpha", "hht", "wilson_theta", "dormand_prince"})
       for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
-        const Passage passage = run(flying_mass(c, false, hard), method, tolerance, end);
-        EXPECT_NEAR(passage.state.v[0], rebound, 3.0 * tolerance * v0) << method << " " << share << " " << tolerance;
+        const testing::AdaptiveRun passage =
+            testing::run_adaptively(flying_mass(c, false, hard), method, tolerance, end);
+        EXPECT_NEAR(passage.end().v[0], rebound, 3.0 * tolerance * v0) << method << " " << share << " " << tolerance;
       }
   }
 }
@@ -178,16 +145,17 @@ TEST(RattlingChain, IsTheSameWhicheverMethodLocatesItsTransitions) {
   const double end = 20.0;
   for (const double damping : {0.0, 2.0}) {
     const auto system = rattling_chain(damping);
-    const Passage fine = run(system, "dormand_prince", 1e-9, end), coarse = run(system, "generalized_alpha", 1e-5, end);
+    const testing::AdaptiveRun fine = testing::run_adaptively(system, "dormand_prince", 1e-9, end),
+                               coarse = testing::run_adaptively(system, "generalized_alpha", 1e-5, end);
     EXPECT_GT(fine.report.events, 20);
     EXPECT_EQ(fine.report.events, coarse.report.events);
-    EXPECT_LT(difference(fine.state, coarse.state), 100.0 * 1e-5 * 10.0);
+    EXPECT_LT(difference(fine.end(), coarse.end()), 100.0 * 1e-5 * 10.0);
     if (damping > 0.0) continue;
     const auto stepper = make_stepper(make_method("rk4"), system);
     system::State state = consistent_start(system, system.start());
     ASSERT_EQ(march(*stepper, state, 1e-4, end).end, MarchEnd::reached);
     // A kink passed within a step h errs by the jump of the rate of force, some 100 N/s, times h^2: 1e-6 in all.
-    EXPECT_LT(difference(fine.state, state), 2e-6);
+    EXPECT_LT(difference(fine.end(), state), 2e-6);
   }
 }
 
