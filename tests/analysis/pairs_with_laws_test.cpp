@@ -60,11 +60,6 @@ TEST(PairsWithLaws, RefuseWhatTheirEstimateDoesNotSee) {
   EXPECT_NE(refusal(study(element, "dormand_prince", "{ tolerance = 1e-4, events = \"pass\" }"))
                 .find("pass over the turns of \"b\""),
             std::string::npos);
-  const std::string pressed =
-      "slider = [{ name = \"s\", between = [\"m\", \"ground\"], stiffness = 1.0, friction_coefficient = 0.5, "
-      "normal_load = \"0.2 + 0.1*sin(t)\" }]\n";
-  EXPECT_NE(refusal(study(pressed, "dormand_prince", "{ tolerance = 1e-4 }")).find("the memory of \"s\""),
-            std::string::npos);
 }
 
 }  // namespace

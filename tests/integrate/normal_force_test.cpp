@@ -10,6 +10,7 @@
 
 #include "support/laws.hpp"
 #include "support/models.hpp"
+#include "support/pressed.hpp"
 #include "support/random_model.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@
 namespace rubato::integrate {
 namespace {
 
-constexpr double mu = 0.5;
+constexpr double mu = testing::rubbed_mu;
 
 model::LawBetween as_law(const model::Slider& slider) {
   model::LawBetween law{slider.name, "slider", slider.first, slider.second, model::make_jenkins(slider.stiffness, mu)};
@@ -194,22 +195,6 @@ TEST(ContactsAsLaws, MoveInAutomaticStepsAsTheirClosedForms) {
   }
 }
 
-/// m x'' + c x' + k x + T = F cos(w t) with a law that takes a normal force.
-system::LocallyNonlinear rubbed_mass(const std::string& normal, double stiffness, double damping, double slider,
-                                     std::vector<system::LoadTerm> loads, double speed = 0.0) {
-  system::LocallyNonlinear::Parts parts;
-  parts.mass = testing::sparse(Matrix::Identity(1, 1));
-  parts.damping = testing::sparse(damping * Matrix::Identity(1, 1));
-  parts.stiffness = testing::sparse(stiffness * Matrix::Identity(1, 1));
-  parts.loads = system::Loads(std::move(loads));
-  parts.start.q = Vector::Zero(1);
-  parts.start.v = Vector::Constant(1, speed);
-  parts.coordinates = {"mass"};
-  parts.laws = {{"rubs", "slider", 0, ground, model::make_jenkins(slider, mu)}};
-  parts.laws.front().normal.formula = std::make_shared<const numerics::Formula>(normal, numerics::Parameters{}, true);
-  return system::LocallyNonlinear(std::move(parts));
-}
-
 /// Largest and smallest x of a march, and the work of its first law.
 struct Extent final : Observer {
   explicit Extent(const system::LocallyNonlinear& of) : system(of) {}
@@ -229,7 +214,7 @@ struct Extent final : Observer {
 // rubbed away, mu times the integral of N |v|.
 TEST(NormalForces, OfTimeSlowASlidingMassDown) {
   const double v0 = 4.0, end = 1.0;
-  const auto system = rubbed_mass("2 + 3*t", 0.0, 0.0, 1e7, {}, v0);
+  const auto system = testing::rubbed_mass("2 + 3*t", 0.0, 0.0, 1e7, {}, v0);
   const double slowed = v0 - mu * (2.0 * end + 1.5 * end * end);
   for (const char* name : {"generalized_alpha", "average_acceleration", "exponential", "hht"}) {
     SCOPED_TRACE(name);
@@ -255,7 +240,7 @@ TEST(NormalForces, OfTimeGiveAMassTheOrbitsOfTheExactFlow) {
     SCOPED_TRACE(one.w);
     char normal[80];
     std::snprintf(normal, sizeof normal, "1 + %.17g*cos(%.17g*t + 0.8)", one.n1, one.w);
-    const auto system = rubbed_mass(normal, 1.0, 0.05, 1.0, {testing::harmonic(0, 1.0, one.w)});
+    const auto system = testing::rubbed_mass(normal, 1.0, 0.05, 1.0, {testing::harmonic(0, 1.0, one.w)});
     const double period = 2.0 * std::numbers::pi / one.w;
     const auto stepper = make_stepper(make_method("average_acceleration"), system);
     system::State state = consistent_start(system, system.start());
@@ -265,32 +250,6 @@ TEST(NormalForces, OfTimeGiveAMassTheOrbitsOfTheExactFlow) {
     EXPECT_NEAR(0.5 * (extent.high - extent.low), one.half, 2e-5 * one.half);
     EXPECT_NEAR(extent.work, one.work, 5e-5 * one.work);
   }
-}
-
-/// x'' + .04 x' + x + T = .8 cos(w t), z'' + .06 z' + z + N = 1.5 + .9 cos(w t + pi/3), kT = 1, kn = 2, mu = .4: a
-/// slider on x pressed by what stops z, a stop or the same as a law.
-system::LocallyNonlinear coupled(double w, bool stop_is_law, bool behind_each_other = false) {
-  system::LocallyNonlinear::Parts parts;
-  parts.mass = testing::sparse(Matrix::Identity(2, 2));
-  parts.damping = testing::sparse(Vector(Vector::Map(std::array{0.04, 0.06}.data(), 2)).asDiagonal().toDenseMatrix());
-  parts.stiffness = testing::sparse(Matrix::Identity(2, 2));
-  parts.loads = system::Loads({testing::harmonic(0, 0.8, w), testing::harmonic(1, 1.5, 0.0),
-                               testing::harmonic(1, 0.9, w, std::numbers::pi / 3.0)});
-  parts.coordinates = {"x", "z"};
-  model::LawBetween rubs{"rubs", "slider", 0, ground, model::make_jenkins(1.0, 0.4)};
-  model::LawBetween presses{"presses", "stop", 1, ground, model::make_one_sided_spring(2.0, 0.0)};
-  if (!stop_is_law) {
-    parts.stops = {{"presses", 1, ground, 0.0, 2.0, 0.0}};
-    rubs.normal.stop = 0;
-    parts.laws = {rubs};
-  } else if (behind_each_other) {
-    rubs.normal.law = 0;
-    parts.laws = {presses, rubs};
-  } else {
-    rubs.normal.law = 1;
-    parts.laws = {rubs, presses};
-  }
-  return system::LocallyNonlinear(std::move(parts));
 }
 
 // From rest, w = 1.5, by the exact piecewise linear flow: the contact slips, opens and closes in each period.
@@ -303,7 +262,7 @@ TEST(NormalForces, OfAStopGiveTheTransientOfTheExactFlow) {
                       {10, 0.73944505064, -0.81201523249, 0.78103151874, -2.957631051},
                       {20, -0.8378802497, -4.2181442438, -0.69345501431, 1.5407873702},
                       {50, -1.2699636324, -1.0231479574, 0.2091093392, 2.9730336982}};
-  const auto system = coupled(1.5, false);
+  const auto system = testing::coupled(1.5, false);
   std::vector<double> errors;
   for (const double h : {2e-3, 1e-3}) {
     const auto stepper = make_stepper(make_method("average_acceleration"), system);
@@ -326,7 +285,7 @@ TEST(NormalForces, OfAStopGiveTheTransientOfTheExactFlow) {
 TEST(NormalForces, OfALawAreThoseOfTheStopThatItIs) {
   std::vector<Histories> histories(3);
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto system = coupled(1.2, i > 0, i == 2);
+    const auto system = testing::coupled(1.2, i > 0, i == 2);
     for (const char* name : {"generalized_alpha", "exponential", "rk4", "central_difference", "wilson_theta"}) {
       const auto stepper = make_stepper(make_method(name), system);
       system::State state = consistent_start(system, system.start());
@@ -337,7 +296,7 @@ TEST(NormalForces, OfALawAreThoseOfTheStopThatItIs) {
 }
 
 TEST(NormalForces, OfAStopAreMetByAutomaticSteps) {
-  const auto system = coupled(1.5, false);
+  const auto system = testing::coupled(1.5, false);
   const double tolerance = 1e-6;
   const Method method = make_method("generalized_alpha");
   const auto stepper = make_stepper(method, system);

@@ -36,7 +36,7 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
 int ContactEvents::branch_of_law(Index contact, const system::State& state) const {
   const Index law = contact - system_.first_law();
   return static_cast<int>(system_.laws()[static_cast<std::size_t>(law)].law->contact(
-      system_.law_point(law, state, model::Side::left), state.memory.data() + system_.memory_of(law)));
+      system_.law_point(law, state, model::Side::left), state.memory.data() + system_.memory_of(law), 0.0));
 }
 
 void ContactEvents::note_law(Watched& one, int now, double t) {
@@ -57,7 +57,9 @@ void ContactEvents::note_law(Watched& one, int now, double t) {
 bool ContactEvents::accepted(const system::State& before, const system::State& after) {
   for (Watched& one : watched_) {
     if (one.contact >= system_.first_law()) {
-      const int now = branch_of_law(one.contact, after);
+      const int now = located_
+                          ? static_cast<int>(located_->contact_of_law(one.contact - system_.first_law(), before, after))
+                          : branch_of_law(one.contact, after);
       if (now != one.branch) note_law(one, now, after.t);
       continue;
     }

@@ -56,7 +56,8 @@ StructureTimeline::StructureTimeline(const system::LocallyNonlinear& system, dou
       left_(system.size()),
       right_(system.size()),
       beyond_(system.start()),
-      equilibrium_(system) {}
+      equilibrium_(system),
+      pressed_(system) {}
 
 std::vector<double> StructureTimeline::breakpoints(double from, double to) const {
   std::vector<double> times = loads_.breakpoints(from, to);
@@ -211,12 +212,17 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
 }
 
 double StructureTimeline::guard_of_law(Index contact, const system::State& from, const system::State& to,
-                                       double share) const {
+                                       double share) {
+  const Index law = contact - system_.first_law();
+  const model::Law& watched = *system_.laws()[static_cast<std::size_t>(law)].law;
+  const double* const memory = from.memory.data() + system_.memory_of(law);
+  if (watched.takes_normal())
+    return watched.guard(pressed_.going_on(law, from, to, 0.0, 2.0 * resolution_), memory,
+                         pressed_.at(law, from, to, share), 2.0 * resolution_);
   const Path path = path_of(contact, from, to);
   // A travel of round-off turns at random.
   const double size = size_of(system_, contact, from.q);
   if (std::abs(path.u1 - path.u0) + path.h * std::abs(path.v1) <= round_off * size) return 1.0;
-  const Index law = contact - system_.first_law();
   model::LawPoint start = system_.law_point(law, from, model::Side::right);
   model::LawPoint end = system_.law_point(law, to, model::Side::left);
   const double acceleration = system_.relative_displacement(contact, from.auxiliary_acceleration);
@@ -225,9 +231,17 @@ double StructureTimeline::guard_of_law(Index contact, const system::State& from,
   end.u = path.displacement(share);
   end.rate = path.velocity(share);
   end.t = from.t + share * path.h;
-  end.normal = start.normal + share * (end.normal - start.normal);
-  return system_.laws()[static_cast<std::size_t>(law)].law->guard(start, from.memory.data() + system_.memory_of(law),
-                                                                  end, 2.0 * resolution_);
+  return watched.guard(start, memory, end, 2.0 * resolution_);
+}
+
+model::Law::Contact StructureTimeline::contact_of_law(Index law, const system::State& before,
+                                                      const system::State& after) {
+  const model::Law& watched = *system_.laws()[static_cast<std::size_t>(law)].law;
+  const double* const memory = after.memory.data() + system_.memory_of(law);
+  if (!watches_sliders_ || !watched.takes_normal())
+    return watched.contact(system_.law_point(law, after, model::Side::left), memory, 0.0);
+  const double near = 2.0 * resolution_;
+  return watched.contact(pressed_.going_on(law, before, after, 1.0, near), memory, near);
 }
 
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {
@@ -245,7 +259,7 @@ int StructureTimeline::branch_after(Index contact, const system::State& before, 
 }
 
 /// The share of the step at which a guard that is negative at its end vanishes on the path.
-double StructureTimeline::share_of(Index contact, const system::State& from, const system::State& to) const {
+double StructureTimeline::share_of(Index contact, const system::State& from, const system::State& to) {
   const Path path = path_of(contact, from, to);
   const Watch watch = watch_of(contact, from);
   switch (watch) {

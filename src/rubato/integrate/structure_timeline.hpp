@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/pressed_motion.hpp>
 #include <rubato/integrate/timeline.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -35,6 +36,8 @@ class StructureTimeline final : public Timeline {
   /// The same at the end of a step, which may have ended at a transition: forces and velocities there are zero but for
   /// what locating leaves, of either sign.
   int branch_after(Index contact, const system::State& before, const system::State& after);
+  /// How a law that sticks goes on at the end of such a step.
+  model::Law::Contact contact_of_law(Index law, const system::State& before, const system::State& after);
 
  private:
   enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again, law };
@@ -44,9 +47,9 @@ class StructureTimeline final : public Timeline {
   Watch watch_of(Index contact, const system::State& from) const;
   Watch watch_of_slider(Index slider, const system::State& from) const;
   Watch watch_of_stop(Index contact, const system::State& from) const;
-  double share_of(Index contact, const system::State& from, const system::State& to) const;
+  double share_of(Index contact, const system::State& from, const system::State& to);
   const model::Stop& stop_of(Index contact) const;
-  double guard_of_law(Index contact, const system::State& from, const system::State& to, double share) const;
+  double guard_of_law(Index contact, const system::State& from, const system::State& to, double share);
   bool has_ended_at(Index contact, const system::State& from, const system::State& to);
 
   const system::LocallyNonlinear& system_;
@@ -56,6 +59,7 @@ class StructureTimeline final : public Timeline {
   Vector left_, right_;
   system::State beyond_;
   system::EquilibriumAcceleration equilibrium_;
+  PressedMotion pressed_;
 };
 
 }  // namespace rubato::integrate

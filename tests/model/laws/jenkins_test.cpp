@@ -213,7 +213,7 @@ TEST(Jenkins, SaysWhetherItSticksSlipsOrIsOpen) {
   const auto law = make_jenkins(stiffness, mu);
   LawPoint point;
   point.normal = 1.0;
-  const auto contact = [&](double memory) { return law->contact(point, &memory); };
+  const auto contact = [&](double memory) { return law->contact(point, &memory, 0.0); };
   EXPECT_EQ(contact(0.2), Law::Contact::sticks);
   EXPECT_EQ(contact(0.5), Law::Contact::slips_forwards);
   EXPECT_EQ(contact(-0.5), Law::Contact::slips_backwards);

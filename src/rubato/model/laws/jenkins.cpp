@@ -75,12 +75,34 @@ class Jenkins final : public Law, public LawSlopes {
     return let_go + 0.5 * mu_ * (since + last) * slip;
   }
 
-  Contact contact(const LawPoint& point, const double* memory) const override {
+  Contact contact(const LawPoint& point, const double* memory, double near) const override {
     constexpr double round_off = 256.0 * std::numeric_limits<double>::epsilon();
-    if (!(point.normal > 0.0)) return Contact::open;
-    const double limit = mu_ * point.normal;
-    if (std::abs(memory[0]) < limit * (1.0 - round_off)) return Contact::sticks;
-    return memory[0] > 0.0 ? Contact::slips_forwards : Contact::slips_backwards;
+    const double meeting = near * point.normal_rate;
+    if (!(point.normal > -meeting) || (point.normal <= 0.0 && meeting <= 0.0)) return Contact::open;
+    const double limit = mu_ * std::max(point.normal, 0.0), force = start(point, memory);
+    const double side = std::copysign(1.0, force == 0.0 ? point.rate : force);
+    const double speed = slip_rate(point, side);  // with which it would slip
+    const double left = limit - std::abs(force);
+    if (left > std::max(round_off * limit, near * stiffness_ * std::abs(speed))) return Contact::sticks;
+    if (near > 0.0 && !(speed > 0.0)) return Contact::sticks;
+    return side > 0.0 ? Contact::slips_forwards : Contact::slips_backwards;
+  }
+
+  bool is_exact_between_guards() const override { return true; }
+  double guard(const LawPoint& from, const double* memory, const LawPoint& to, double near) const override {
+    // What presses may be a force that is never below zero: open there, and closed beyond.
+    constexpr double inside = std::numeric_limits<double>::min();
+    const Contact begins = contact(from, memory, near);
+    switch (begins) {
+      case Contact::open:
+        return to.normal == 0.0 ? inside : -to.normal;
+      case Contact::slips_forwards:
+      case Contact::slips_backwards:
+        return std::min(slip_rate(to, begins == Contact::slips_forwards ? 1.0 : -1.0),
+                        to.normal == 0.0 ? -inside : to.normal);
+      default:
+        return mu_ * to.normal - std::abs(start(from, memory) + stiffness_ * (to.u - from.u));
+    }
   }
 
   bool takes_normal() const override { return true; }
@@ -89,6 +111,9 @@ class Jenkins final : public Law, public LawSlopes {
   bool is_odd() const override { return true; }
 
  private:
+  /// The speed at which it slips to a side: of u - f/k, where f is at the limit of that side.
+  double slip_rate(const LawPoint& at, double side) const { return side * at.rate - mu_ * at.normal_rate / stiffness_; }
+
   /// The force at the start of a step, within what presses then.
   double start(const LawPoint& from, const double* memory) const {
     const double limit = mu_ * std::max(from.normal, 0.0);

@@ -11,11 +11,12 @@ namespace rubato::model {
 
 /// What a law sees: a relative displacement, or the coordinate that a joint leaves free, and its rate.
 struct LawPoint {
-  double u = 0.0;           ///< [m] or [rad]
-  double rate = 0.0;        ///< du/dt [m/s] or [rad/s]
-  double t = 0.0;           ///< [s]
-  Side side = Side::right;  ///< which limit to take of a law that jumps at t
-  double normal = 0.0;      ///< what presses its ends together, across u [N]; they are apart where it is not positive
+  double u = 0.0;            ///< [m] or [rad]
+  double rate = 0.0;         ///< du/dt [m/s] or [rad/s]
+  double t = 0.0;            ///< [s]
+  Side side = Side::right;   ///< which limit to take of a law that jumps at t
+  double normal = 0.0;       ///< what presses its ends together, across u [N]; they are apart where it is not positive
+  double normal_rate = 0.0;  ///< d(normal)/dt [N/s], told where transitions are looked for
 };
 
 /// A force with its slopes. It resists: its ends are pushed together where u and the force are positive.
@@ -66,7 +67,8 @@ class Law {
   virtual bool is_exact_between_guards() const { return memory_size() == 0; }
   /// What is positive where a step goes on as it began, zero where it first does not (the motion turns, a slip begins
   /// or ends), and negative beyond. Steps that end at transitions end there; 1: nothing ever changes.
-  /// @param from    the start of the step. Where it rests its rate has the sign with which it goes on.
+  /// @param from    the start of the step. Where it rests its rate has the sign with which it goes on; where a law
+  ///                takes a normal force its rates are those that `near` later are reached.
   /// @param memory  at `from`
   /// @param near    what would be reached within this time has been [s]
   virtual double guard(const LawPoint& from, const double* memory, const LawPoint& to, double near) const {
@@ -83,10 +85,13 @@ class Law {
   /// of a law that does not stick. Small motions have a limit with it and one without, as those of sliders do.
   virtual double sticking_stiffness() const { return 0.0; }
   /// What a law that sticks does at a point; of others `none`.
+  /// @param near  of a point whose rates are told: how it goes on, where what would be reached within this time has
+  ///              been [s]. Zero: what the point alone says, one at its limit slips.
   enum class Contact : signed char { none, sticks, slips_forwards, slips_backwards, open };
-  virtual Contact contact(const LawPoint& point, const double* memory) const {
+  virtual Contact contact(const LawPoint& point, const double* memory, double near) const {
     (void)point;
     (void)memory;
+    (void)near;
     return Contact::none;
   }
 

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <rubato/model/laws/law.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <vector>
+
+namespace rubato::integrate {
+
+/// What laws that are pressed see on the way from one state to another, with the rate of what presses. Displacements
+/// follow the cubic through displacement and velocity of both ends. A workspace.
+class PressedMotion {
+ public:
+  explicit PressedMotion(const system::LocallyNonlinear& system) : system_(system), next_(system.start().memory) {}
+
+  /// At a share of the step; 0 is its start.
+  model::LawPoint at(Index law, const system::State& from, const system::State& to, double share);
+  /// The same place, with the rates that `moment` later [s] are reached there: of what rests they say how it goes on.
+  model::LawPoint going_on(Index law, const system::State& from, const system::State& to, double share, double moment);
+
+ private:
+  struct Place {
+    double u, rate, acceleration;
+  };
+  struct Pressing {
+    double value, rate, second_rate;
+  };
+  Place place(Index contact, const system::State& from, const system::State& to, double share) const;
+  Pressing pressing(Index law, const system::State& from, const system::State& to, double share);
+  Pressing of_formula(const model::NormalForce& normal, double t, bool is_start) const;
+  Pressing of_stop(Index stop, const Place& place) const;
+  Pressing of_law(Index law, const system::State& from, const system::State& to, double share);
+
+  const system::LocallyNonlinear& system_;
+  Vector next_;  // memory of laws at the place
+};
+
+}  // namespace rubato::integrate
