@@ -30,7 +30,9 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
     if (group->has_sums()) summing_.push_back(group.get());
   }
   rows_ = sink.open(layout);
-  if (ledger_) energy_rows_ = sink.open(energy_layout(name, *ledger_));
+  if (!ledger_) return;
+  energy_rows_ = sink.open(energy_layout(name, *ledger_));
+  residue_.emplace(ledger_->accounts());
 }
 
 void TransientRecorder::book(const system::State& before, const system::State& after) {
@@ -48,6 +50,7 @@ void TransientRecorder::record(const system::State& before, const system::State&
   if (!ledger_) return;
   row_.assign(1, now.t);
   const auto energy = ledger_->at(before, now);
+  residue_->note(now.t, energy);
   row_.insert(row_.end(), energy.begin(), energy.end());
   energy_rows_->append(row_);
 }

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <rubato/analysis/residue_watch.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/balance.hpp>
 #include <rubato/integrate/energy_ledger.hpp>
 #include <rubato/results/columns/column_group.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,12 +31,15 @@ class TransientRecorder {
   /// @param is_balanced  acceleration and multipliers of `now` are those to show: between the ends of a step
   void record(const system::State& before, const system::State& now, bool is_balanced = false);
   long rows() const { return count_; }
+  /// Null: there is no ledger.
+  const ResidueWatch* residue() const { return residue_ ? &*residue_ : nullptr; }
 
  private:
   results::ColumnGroups groups_;
   std::vector<results::ColumnGroup*> summing_;
   integrate::Balance& balance_;
   integrate::EnergyLedger* ledger_;
+  std::optional<ResidueWatch> residue_;
   system::State shown_;
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;

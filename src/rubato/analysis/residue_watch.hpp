@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/integrate/energy_ledger.hpp>
+#include <rubato/integrate/events.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rubato::analysis {
+
+/// Watches what a method makes or loses of the energy of a transient, from the rows of its ledger.
+class ResidueWatch {
+ public:
+  explicit ResidueWatch(std::vector<integrate::Account> accounts);
+
+  /// @param energies  of each account, then the residue [J]
+  void note(double t, std::span<const double> energies);
+
+  /// What is said of a residue that is larger than a share of the largest energy: when it came and from which parts.
+  /// Empty where it is smaller.
+  /// @param remedy  "take ..."
+  std::string warning(double share, const integrate::Events& events, const std::string& remedy) const;
+
+ private:
+  std::vector<integrate::Account> accounts_;
+  std::vector<double> start_;
+  double largest_ = 0.0;                                 // of what energies change by, and of kinetic energy [J]
+  double round_off_ = 0.0;                               // of sums of the energies themselves [J]
+  double residue_ = 0.0, at_ = 0.0;                      // the largest, and when
+  double last_ = 0.0, last_t_ = 0.0;                     // of the row before
+  double rise_ = 0.0, rise_from_ = 0.0, rise_to_ = 0.0;  // the largest between two rows
+};
+
+}  // namespace rubato::analysis
