@@ -153,6 +153,7 @@ class Marcher {
       if (goes_on_ && stagnates(length.step, error)) begin_anew_here();
       return;
     }
+    const bool was_rejected = history_.was_rejected;
     // A step cut short says little about the next, and nothing about what follows a transition.
     const bool was_cut = length.step < wanted_ * (1.0 - same_step);
     if (!was_cut)
@@ -160,7 +161,8 @@ class Marcher {
     else if (!is_event)
       wanted_ = std::max(wanted_, decision.next);
     accept(length, error);
-    if (crawls(length.step)) return fail({StepOutcome::crawls, -1}, length.step);
+    if (crawls(length.step, is_event ? 1.0 : was_rejected ? rejected_weight : smooth_weight))
+      return fail({StepOutcome::crawls, -1}, length.step);
     if (is_event && base_->t < end_ && goes_on_) pass_event();
     if (length.arrives && base_->t < end_ && goes_on_) pass_breakpoint();
   }
@@ -187,13 +189,16 @@ class Marcher {
   }
 
   /// Whether steps have been so short for so long that the run would not end: of a run that takes longer steps at all.
-  bool crawls(double step) {
+  /// Those without a transition, and even more those without a rejection, get somewhere: a motion that dies away early
+  /// in a long run has such steps as long as it lasts.
+  /// @param weight  of the step
+  bool crawls(double step, double weight) {
     constexpr double share = 1e4;  // of the resolution, 1e-12 of the run
-    constexpr int most = 2000;
     const double nothing = share * timeline_.resolution();
-    crawling_ = step < nothing && plan_.largest > 100.0 * nothing ? crawling_ + 1 : 0;
-    return crawling_ > most;
+    crawling_ = step < nothing && plan_.largest > 100.0 * nothing ? crawling_ + weight : 0.0;
+    return crawling_ > 2000.0;
   }
+  static constexpr double rejected_weight = 0.02, smooth_weight = 0.002;
 
   /// One try from base_; a failure shortens the next.
   bool has_tried(const Length& length) {
@@ -359,7 +364,7 @@ class Marcher {
   double part_ = 0.0;                 // the last step since the last breakpoint
   std::array<double, 16> lengths_{};  // of the last steps, the last first
   ControlHistory history_;
-  int crawling_ = 0;  // steps in a row
+  double crawling_ = 0.0;  // steps in a row, by their weight
   double stagnant_error_ = 0.0,
          stagnant_step_ = 0.0;   // of the first of the rejected tries whose errors do not fall; 0: none
   bool has_begun_anew_ = false;  // since the last accepted step
