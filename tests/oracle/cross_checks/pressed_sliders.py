@@ -5,8 +5,6 @@ Each is a law of the general route then, and answers as the slider of the closed
 
 import copy
 
-PAIRS = ("bogacki_shampine", "dormand_prince")
-
 
 def by_time(tables, _parts):
     """`normal_load` as a formula of t; steady responses refuse t."""
@@ -34,6 +32,5 @@ def _changed(tables, takes):
     if "slider" not in tables or "body" in tables:
         return None
     tables = copy.deepcopy(tables)
-    tables["analysis"] = [part for part in tables["analysis"] if takes(part) and not (
-        part.get("method") in PAIRS and isinstance(part["step"], dict))]
+    tables["analysis"] = [part for part in tables["analysis"] if takes(part)]
     return tables if tables["analysis"] else None
