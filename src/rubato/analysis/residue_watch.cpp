@@ -53,12 +53,16 @@ void ResidueWatch::note(double t, std::span<const double> energies) {
   last_t_ = t;
 }
 
+std::string ResidueWatch::time_of_rise() const {
+  const std::string from = fmt::format("{:.6g}", rise_from_), to = fmt::format("{:.6g}", rise_to_);
+  return from == to ? fmt::format("at t = {} s", to) : fmt::format("from t = {} to {} s", from, to);
+}
+
 std::string ResidueWatch::warning(double share, const integrate::Events& events, const std::string& remedy) const {
   if (!(std::abs(residue_) > std::max(share * largest_, round_off_))) return "";
-  const std::string most = rise_ > 0.5 * std::abs(residue_)
-                               ? fmt::format(", most of it from t = {:.6g} to {:.6g} s{}", rise_from_, rise_to_,
-                                             names_between(events, rise_from_, rise_to_))
-                               : "";
+  const std::string most = rise_ > 0.5 * std::abs(residue_) ? fmt::format(", most of it {}{}", time_of_rise(),
+                                                                          names_between(events, rise_from_, rise_to_))
+                                                            : "";
   return fmt::format(
       "the method {} energy: {:.3g} J at t = {:.6g} s, {:.2g} % of the largest energy, {:.3g} J{} "
       "(column residue of the energy table); {}",

@@ -23,6 +23,8 @@ class ResidueWatch {
   std::string warning(double share, const integrate::Events& events, const std::string& remedy) const;
 
  private:
+  std::string time_of_rise() const;
+
   std::vector<integrate::Account> accounts_;
   std::vector<double> start_;
   double largest_ = 0.0;                                 // of what energies change by, and of kinetic energy [J]
