@@ -46,6 +46,10 @@ class ConstrainedSystem : public System {
   virtual bool has_followed_reactions() const { return false; }
   /// Whether there is friction whose direction is part of the motion.
   virtual bool has_slip_directions() const { return false; }
+  /// Whether there are stops that are springs, which a motion meets for a short time.
+  virtual bool has_stops() const { return false; }
+  /// Whether one of them is closed.
+  virtual bool touches(const State& /*state*/) const { return false; }
   /// Whether a motion moves memory that is not in q and v: State::memory.
   virtual bool has_memory() const { return false; }
 

@@ -102,6 +102,18 @@ std::vector<Index> Mechanism::driven_rows() const {
   return rows;
 }
 
+namespace {
+bool is_spring_stop(const model::Lock& lock) { return !lock.is_rigid() && !lock.is_latch; }
+}  // namespace
+
+bool Mechanism::has_stops() const { return std::any_of(model_.locks.begin(), model_.locks.end(), is_spring_stop); }
+
+bool Mechanism::touches(const State& state) const {
+  for (std::size_t i = 0; i < model_.locks.size(); ++i)
+    if (is_spring_stop(model_.locks[i]) && state.phase[i] == model::lock_engaged) return true;
+  return false;
+}
+
 bool Mechanism::has_kinks() const {
   return std::any_of(model_.elements.begin(), model_.elements.end(),
                      [](const auto& element) { return element->has_kinks(); });

@@ -49,6 +49,8 @@ class Mechanism final : public ConstrainedSystem {
   bool has_kinks() const override;
   bool has_followed_reactions() const override;
   bool has_slip_directions() const override;
+  bool has_stops() const override;
+  bool touches(const State& state) const override;
   bool has_memory() const override { return model_.law_memory_size > 0; }
   std::unique_ptr<ConstrainedEquations> equations() const override;
 

@@ -40,8 +40,8 @@ class ConstrainedSpace final : public ErrorSpace {
   double round_off() const override { return round_off_; }
 
   bool turns_freely() const override { return true; }
-  bool has_stops() const override { return false; }
-  bool touches(const system::State&) const override { return false; }
+  bool has_stops() const override { return system_.has_stops(); }
+  bool touches(const system::State& state) const override { return system_.touches(state); }
 
   /// No more than the system's own size: joints keep an acceleration from leading where it points.
   double promised_size(const ResponseScales& scales) override { return std::min(extent_, scales.size(extent_)); }

@@ -102,7 +102,9 @@ class LocalErrorEstimator final : public Estimator {
     } else {
       // J alone may stand at a zero of its own.
       dq_squared = std::fmax(dq_squared, h * h * scales_.mean_square());
-      const double dv = std::abs(c_.velocity) * h + std::abs(c_.velocity_next) * h * h * scales_.frequency();
+      // What has begun to touch swings by a frequency that no step has shown yet: J is of the whole step.
+      const double swing = is_contact_ ? std::fmax(scales_.frequency(), 1.0 / h) : scales_.frequency();
+      const double dv = std::abs(c_.velocity) * h + std::abs(c_.velocity_next) * h * h * swing;
       dv_squared = dv * dv * dq_squared;
     }
     const double dq = c_.displacement * h * h;
