@@ -58,8 +58,9 @@ std::string ResidueWatch::time_of_rise() const {
   return from == to ? fmt::format("at t = {} s", to) : fmt::format("from t = {} to {} s", from, to);
 }
 
-std::string ResidueWatch::warning(double share, const integrate::Events& events, const std::string& remedy) const {
-  if (!(std::abs(residue_) > std::max(share * largest_, round_off_))) return "";
+std::string ResidueWatch::warning(double share, double round_off, const integrate::Events& events,
+                                  const std::string& remedy) const {
+  if (!(std::abs(residue_) > std::max({share * largest_, round_off_, round_off}))) return "";
   const std::string most = rise_ > 0.5 * std::abs(residue_) ? fmt::format(", most of it {}{}", time_of_rise(),
                                                                           names_between(events, rise_from_, rise_to_))
                                                             : "";

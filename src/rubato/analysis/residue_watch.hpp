@@ -19,8 +19,9 @@ class ResidueWatch {
 
   /// What is said of a residue that is larger than a share of the largest energy: when it came and from which parts.
   /// Empty where it is smaller.
-  /// @param remedy  "take ..."
-  std::string warning(double share, const integrate::Events& events, const std::string& remedy) const;
+  /// @param round_off  what says nothing [J]
+  /// @param remedy     "take ..."
+  std::string warning(double share, double round_off, const integrate::Events& events, const std::string& remedy) const;
 
  private:
   std::string time_of_rise() const;

@@ -40,15 +40,15 @@ integrate::AdaptiveReport march_and_record(const std::string& name, const Transi
 
 /// Of a residue beyond ten tolerances, or of equal steps beyond a thousandth of the largest energy. Works are summed by
 /// trapezoids, so that the residue of a method of higher order is theirs.
-std::string warning_of_residue(const TransientRecorder& recorder, const TransientPlan& plan,
+std::string warning_of_residue(const TransientRecorder& recorder, const TransientPlan& plan, double round_off,
                                const integrate::Events& events) {
   if (!recorder.residue() || integrate::find_method(plan.march.method.name).order > 2) return "";
   if (plan.march.automatic && plan.march.step == 0.0)
     return recorder.residue()->warning(
-        10.0 * plan.march.automatic->tolerance, events,
+        10.0 * plan.march.automatic->tolerance, round_off, events,
         fmt::format("take a smaller tolerance than {}", plan.march.automatic->tolerance));
   return recorder.residue()->warning(
-      1e-3, events,
+      1e-3, round_off, events,
       fmt::format("take a shorter step than {} s, or step = {{ tolerance = 1e-3 }}, which watches its error",
                   plan.march.step));
 }
@@ -91,12 +91,14 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     const integrate::Events events = march->events();
     write_events(name, events, context.sink);
     if (const std::string warning = warning_of(events); !warning.empty()) run.warnings.push_back(warning);
-    if (const std::string warning = warning_of_residue(recorder, plan, events); !warning.empty())
+    if (const std::string warning = warning_of_residue(recorder, plan, march->energy_round_off(), events);
+        !warning.empty())
       run.warnings.push_back(warning);
   }
   const integrate::MarchNotes notes = march->notes(report);
   run.statistics.insert(run.statistics.end(), notes.statistics.begin(), notes.statistics.end());
   run.warnings.insert(run.warnings.end(), notes.warnings.begin(), notes.warnings.end());
+  run.findings.insert(run.findings.end(), notes.findings.begin(), notes.findings.end());
   if (notes.known > 0.0) report_events(march->events(), notes.known, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
     run.status = RunStatus::failed;

@@ -1,7 +1,10 @@
 #include <rubato/integrate/contact_events.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace rubato::integrate {
 
@@ -9,6 +12,8 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
                              StructureTimeline* located)
     : system_(system), located_(located), parts_(static_cast<std::size_t>(system.contact_count()), 0) {
   events_.are_of_contacts = true;
+  stops_.resize(static_cast<std::size_t>(system.stop_count()));
+  note_gaps(start);
   const Index sliders = system.slider_count();
   constexpr double none = std::numeric_limits<double>::infinity(), least = std::numeric_limits<double>::denorm_min();
   for (Index i = 0; i < system.first_law(); ++i) {
@@ -55,6 +60,7 @@ void ContactEvents::note_law(Watched& one, int now, double t) {
 }
 
 bool ContactEvents::accepted(const system::State& before, const system::State& after) {
+  note_gaps(after);
   for (Watched& one : watched_) {
     if (one.contact >= system_.first_law()) {
       const int now = located_
@@ -67,6 +73,25 @@ bool ContactEvents::accepted(const system::State& before, const system::State& a
     if (now != one.branch) note_change(one, now, after);
   }
   return true;
+}
+
+void ContactEvents::note_gaps(const system::State& state) {
+  for (Index j = 0; j < system_.stop_count(); ++j) {
+    const Index contact = system_.slider_count() + j;
+    const double gap = system_.stops()[static_cast<std::size_t>(j)].gap;
+    stops_[static_cast<std::size_t>(j)].note(state.t, gap - system_.relative_displacement(contact, state.q));
+  }
+}
+
+std::vector<std::string> ContactEvents::never_reached() const {
+  std::vector<std::string> told;
+  for (std::size_t j = 0; j < stops_.size(); ++j) {
+    const model::Stop& stop = system_.stops()[j];
+    const bool is_angle = system_.is_rotation(stop.first == ground ? stop.second : stop.first);
+    if (std::string line = stops_[j].told(fmt::format("the stop \"{}\"", stop.name), is_angle); !line.empty())
+      told.push_back(std::move(line));
+  }
+  return told;
 }
 
 void ContactEvents::note_change(Watched& one, int now, const system::State& state) {

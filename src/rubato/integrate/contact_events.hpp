@@ -2,6 +2,7 @@
 
 #include <rubato/integrate/driver.hpp>
 #include <rubato/integrate/events.hpp>
+#include <rubato/integrate/nearest_approach.hpp>
 #include <rubato/integrate/structure_timeline.hpp>
 
 #include <vector>
@@ -27,6 +28,8 @@ class ContactEvents final : public Observer {
   void note_slider(double t, Index slider, bool sticks);
 
   const Events& events() const { return events_; }
+  /// Stops that never closed, and how near they came to it.
+  std::vector<std::string> never_reached() const;
 
  private:
   /// A slider, a stop, or a law that sticks and slips.
@@ -42,12 +45,14 @@ class ContactEvents final : public Observer {
   int branch_of_law(Index contact, const system::State& state) const;
   void note_law(Watched& one, int now, double t);
   void note_change(Watched& one, int now, const system::State& state);
+  void note_gaps(const system::State& state);
   void note_stop(Index contact, const system::State& state, bool closes);
 
   const system::LocallyNonlinear& system_;
   StructureTimeline* located_;
   std::vector<Watched> watched_;    // what can change
   std::vector<std::size_t> parts_;  // place of each contact among the names
+  std::vector<NearestApproach> stops_;
   Events events_;
 };
 

@@ -48,6 +48,7 @@ class March {
 struct MarchNotes {
   std::vector<std::pair<std::string, std::string>> statistics = {};
   std::vector<std::string> warnings = {};
+  std::vector<std::string> findings = {};
   double known = 0.0;  ///< of the times of its events [s], for those who tell them one by one; 0: nobody should
 };
 
@@ -68,6 +69,8 @@ class StepMarch : public March {
   /// Why it ended before its time.
   virtual MarchFailure failure(const MarchReport& report) = 0;
   virtual MarchNotes notes(const AdaptiveReport& report) const = 0;
+  /// What its steps leave of an energy by the round-off of places, at least [J].
+  virtual double energy_round_off() { return 0.0; }
 };
 
 struct FlowReport {

@@ -7,6 +7,7 @@
 #include <rubato/integrate/mechanism/mechanism_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
+#include <rubato/integrate/nearest_approach.hpp>
 
 #include <fmt/format.h>
 
@@ -28,11 +29,15 @@ class MotionWatch final : public Observer {
         from_(start.q),
         drift_(mechanism_.constraint_count()),
         way_(mechanism_.size()),
-        momentum_(mechanism_.size()) {}
+        momentum_(mechanism_.size()),
+        locks_(mechanism_.model().locks.size()) {
+    note_locks(start);
+  }
 
   bool accepted(const system::State&, const system::State& after) override {
     note_drift(after);
     note_way(after);
+    note_locks(after);
     return true;
   }
 
@@ -40,6 +45,16 @@ class MotionWatch final : public Observer {
   double largest_drift() const { return largest_drift_; }
   /// The longest way from where the run starts, in the mass norm [m sqrt(kg)].
   double largest_way() const { return largest_way_; }
+  /// Locks that no step ended at.
+  std::vector<std::string> never_reached() const {
+    std::vector<std::string> told;
+    for (std::size_t i = 0; i < locks_.size(); ++i) {
+      const model::Lock& lock = mechanism_.model().locks[i];
+      const std::string what = fmt::format("the {} of \"{}\"", lock.is_latch ? "latch" : "stop", lock.name);
+      if (std::string line = locks_[i].told(what, lock.s.is_angle()); !line.empty()) told.push_back(std::move(line));
+    }
+    return told;
+  }
 
  private:
   void note_drift(const system::State& state) {
@@ -56,9 +71,18 @@ class MotionWatch final : public Observer {
     largest_way_ = std::max(largest_way_, std::sqrt(way_.dot(momentum_)));
   }
 
+  void note_locks(const system::State& state) {
+    for (std::size_t i = 0; i < locks_.size(); ++i) {
+      const model::Lock& lock = mechanism_.model().locks[i];
+      if (state.phase[i] != model::lock_open) locks_[i].reach();
+      locks_[i].note(state.t, lock.sign * (lock.at - lock.s.value(state.q.data())));
+    }
+  }
+
   system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
   Vector from_, drift_, way_, momentum_;
+  std::vector<NearestApproach> locks_;
   double largest_drift_ = 0.0, largest_way_ = 0.0;
 };
 
@@ -135,12 +159,26 @@ class MechanismMarch final : public StepMarch {
 
   Events events() const override { return integrate::events_of(timeline_.events(), mechanism_, &plan_.start); }
 
+  /// The work of the forces at the start along what Newton's method may leave of a step.
+  double energy_round_off() override {
+    constexpr double left = 1e-10;  // of the mechanism's size
+    Vector force(mechanism_.size()), constraint(mechanism_.constraint_count());
+    equations_.begin_step(plan_.start);
+    equations_.go_to_end(plan_.start, model::Side::right);
+    equations_.residual(force, constraint);
+    double squared = 0.0;
+    for (Index i = 0; i < force.size(); ++i)
+      if (const double mass = mechanism_.mass().coeff(i, i); mass > 0.0) squared += force[i] * force[i] / mass;
+    return left * integrate::extent(mechanism_) * std::sqrt(squared);
+  }
+
   MarchNotes notes(const AdaptiveReport& report) const override {
     MarchNotes notes;
     notes.statistics.emplace_back("velocity_drift", fmt::format("{:.3g}", watch_.largest_drift()));
     const std::string small =
         warning_of_small_motion(watch_.largest_way(), estimator_->size(), *plan_.automatic, mechanism_);
     if (!small.empty()) notes.warnings.push_back(small);
+    notes.findings = watch_.never_reached();
     if (has_equal_steps(plan_) && report.failed > 0 && report.march.end != MarchEnd::failed)
       notes.warnings.push_back(fmt::format(
           "Newton's method failed in {} of the equal steps, and was given shorter ones from there to the next "

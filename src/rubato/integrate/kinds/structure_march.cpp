@@ -72,6 +72,7 @@ class StructureMarch final : public StepMarch {
   MarchNotes notes(const AdaptiveReport&) const override {
     MarchNotes notes;
     if (jumps_ && jumps_->missed() > 0) notes.warnings.push_back(missed_jumps(*jumps_));
+    notes.findings = contacts_.never_reached();
     return notes;
   }
 
