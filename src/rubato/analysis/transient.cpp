@@ -49,7 +49,7 @@ std::string warning_of_residue(const TransientRecorder& recorder, const Transien
         fmt::format("take a smaller tolerance than {}", plan.march.automatic->tolerance));
   return recorder.residue()->warning(
       1e-3, round_off, events,
-      fmt::format("take a shorter step than {} s, or step = {{ tolerance = 1e-3 }}, which watches its error",
+      fmt::format("take a shorter step than {:.6g} s, or step = {{ tolerance = 1e-3 }}, which watches its error",
                   plan.march.step));
 }
 
