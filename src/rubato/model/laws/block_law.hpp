@@ -1,0 +1,58 @@
+#pragma once
+
+#include <rubato/core/types.hpp>
+#include <rubato/model/laws/law.hpp>
+
+namespace rubato::model {
+
+/// So many relative displacements may belong to one law: two along a plane and one across it.
+inline constexpr Index largest_block = 3;
+
+/// What a law of several numbers sees of them.
+struct BlockPoint {
+  double u[largest_block] = {};     ///< [m]
+  double rate[largest_block] = {};  ///< du/dt [m/s]
+};
+
+/// A force for each number, with its slopes by all of them; they need not be symmetric. Forces resist, as those of
+/// model::Law do.
+struct BlockAnswer {
+  double force[largest_block] = {};                ///< [N]
+  double by_u[largest_block][largest_block] = {};  ///< force i by u j [N/m]
+};
+
+/// A law of d numbers that are told apart by their places, with a memory of its own: model::Law of a vector. Immutable.
+/// In a step all numbers go in a straight line.
+class BlockLaw {
+ public:
+  virtual ~BlockLaw() = default;
+
+  virtual Index size() const = 0;
+  /// How many numbers its history takes; all of them are zero before anything has happened.
+  virtual Index memory_size() const = 0;
+
+  /// The forces at the end of a step that goes straight from one point to another, with their slopes by the
+  /// displacements at `to` (the consistent tangent).
+  /// @param next  the memory at `to`; must not be `memory`
+  virtual BlockAnswer advance(const BlockPoint& from, const double* memory, const BlockPoint& to,
+                              double* next) const = 0;
+  /// The forces where nothing moves on, with the slopes of small motions that go on as the rates say; from rest, those
+  /// of loading and unloading together.
+  virtual BlockAnswer at(const BlockPoint& point, const double* memory) const = 0;
+
+  /// Elastic energy [J].
+  virtual double stored_energy(const double* u, const double* memory) const = 0;
+  /// What a step dissipates [J], by a formula of its own; `next` as advance() wrote it.
+  virtual double dissipated(const BlockPoint& from, const double* memory, const BlockPoint& to,
+                            const double* next) const = 0;
+
+  /// Force i by u i in small motions from rest: with everything that rubs stuck and all that may touch closed, or
+  /// without friction and closed where it is at rest [N/m].
+  virtual double limit_stiffness(Index i, bool is_stuck) const = 0;
+  /// The last number at which the ends meet [m].
+  virtual double clearance() const = 0;
+  /// What it does at a point; `slips_backwards` of a law of one direction only.
+  virtual Law::Contact contact(const BlockPoint& point, const double* memory) const = 0;
+};
+
+}  // namespace rubato::model

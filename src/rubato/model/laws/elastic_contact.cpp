@@ -1,0 +1,203 @@
+#include <rubato/model/laws/elastic_contact.hpp>
+#include <rubato/model/laws/slip_on_circle.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace rubato::model {
+namespace {
+
+using Pair = SlipOnCircle::Pair;
+
+double dot(const Pair& a, const Pair& b) { return a[0] * b[0] + a[1] * b[1]; }
+double length(const Pair& a) { return std::hypot(a[0], a[1]); }
+
+/// Contacts that rub in one direction have a second one in which nothing ever happens: one formula serves both, and
+/// hypot() of a number and zero is that number.
+class ElasticContact final : public BlockLaw {
+ public:
+  explicit ElasticContact(const ContactValues& values) : v_(values), kt_(values.tangential_stiffness) {
+    assert(values.directions >= 0 && values.directions < largest_block && values.normal_stiffness > 0.0);
+  }
+
+  Index size() const override { return v_.directions + 1; }
+  Index memory_size() const override { return v_.directions; }
+
+  BlockAnswer advance(const BlockPoint& from, const double* memory, const BlockPoint& to, double* next) const override {
+    BlockAnswer answer;
+    const Index n = v_.directions;
+    std::fill_n(next, n, 0.0);
+    const double begin = pressing(from.u), end = pressing(to.u);
+    if (end < 0.0) return answer;
+    answer.force[n] = end;
+    answer.by_u[n][n] = v_.normal_stiffness;  // at the gap with the slope of either side
+    if (n == 0) return answer;
+    if (begin > 0.0)
+      go_on(start(begin, memory), travel(from, to), begin, end, answer);
+    else
+      close(travel(from, to), begin, end, answer);
+    std::copy_n(answer.force, n, next);
+    return answer;
+  }
+
+  BlockAnswer at(const BlockPoint& point, const double* memory) const override {
+    BlockAnswer answer;
+    const Index n = v_.directions;
+    const double pressed = pressing(point.u), limit = v_.friction_coefficient * pressed;
+    if (!(pressed > 0.0)) return answer;
+    answer.force[n] = pressed;
+    answer.by_u[n][n] = v_.normal_stiffness;
+    if (!(limit > 0.0)) return answer;
+    const Pair force = start(pressed, memory);
+    const double size = length(force);
+    // At its limit: it slips on, or comes back; from rest both.
+    double slip = 0.0;
+    if (!sticks(size, limit)) {
+      double power = 0.0;
+      for (Index i = 0; i < n; ++i) power += memory[i] * point.rate[i];
+      slip = power > 0.0 ? 1.0 : power == 0.0 ? 0.5 : 0.0;
+    }
+    for (Index i = 0; i < n; ++i) {
+      answer.force[i] = force[idx(i)];
+      for (Index j = 0; j < n; ++j)
+        answer.by_u[i][j] =
+            kt_ * ((i == j ? 1.0 : 0.0) - (slip > 0.0 ? slip * force[idx(i)] * force[idx(j)] / (size * size) : 0.0));
+      if (slip > 0.0) answer.by_u[i][n] = slip * v_.friction_coefficient * v_.normal_stiffness * force[idx(i)] / size;
+    }
+    return answer;
+  }
+
+  double stored_energy(const double* u, const double* memory) const override {
+    const double pressed = std::max(0.0, pressing(u));
+    double energy = 0.5 * pressed * pressed / v_.normal_stiffness;
+    for (Index i = 0; i < v_.directions; ++i) energy += 0.5 * memory[i] * memory[i] / kt_;
+    return energy;
+  }
+
+  double dissipated(const BlockPoint& from, const double* memory, const BlockPoint& to, const double*) const override {
+    if (v_.directions == 0) return 0.0;
+    const double begin = pressing(from.u), end = pressing(to.u), rise = end - begin, mu = v_.friction_coefficient;
+    const Pair force = start(begin, memory);
+    double kept = 0.0;
+    for (Index i = 0; i < v_.directions; ++i) kept += memory[i] * memory[i];
+    // A load that jumps lets the spring go back to the limit that is left.
+    const double let_go = 0.5 * (kept - dot(force, force)) / kt_;
+    // The part of the step in which the ends are together, and what presses at its ends.
+    const double met = begin < 0.0 && end > 0.0 ? -begin / rise : 0.0;
+    const double parted = begin > 0.0 && end < 0.0 ? -begin / rise : 1.0;
+    const double first = std::max(begin, 0.0), last = std::max(end, 0.0);
+    if (!(first > 0.0 || last > 0.0)) return let_go;
+    Pair du = travel(from, to);
+    for (double& x : du) x *= parted - met;
+    const Pair trial{force[0] + kt_ * du[0], force[1] + kt_ * du[1]};
+    if (!(length(trial) > mu * last)) return let_go;
+    if (!(mu > 0.0)) return let_go;
+    if (!(first > 0.0))  // slips towards du from the instant at which the ends meet
+      return let_go + 0.5 * mu * last * (length(du) - mu * last / kt_);
+    const SlipOnCircle slip(force, du, first, last, kt_, mu, v_.directions);
+    return let_go + slip.dissipated();
+  }
+
+  double limit_stiffness(Index i, bool is_stuck) const override {
+    if (i < v_.directions) return is_stuck ? kt_ : 0.0;
+    return is_stuck || v_.gap < 0.0 ? v_.normal_stiffness : 0.0;
+  }
+
+  double clearance() const override { return v_.gap; }
+
+  Law::Contact contact(const BlockPoint& point, const double* memory) const override {
+    const double pressed = pressing(point.u), limit = v_.friction_coefficient * pressed;
+    if (!(pressed > 0.0)) return Law::Contact::open;
+    if (v_.directions == 0) return Law::Contact::slips_forwards;
+    const Pair force{memory[0], v_.directions > 1 ? memory[1] : 0.0};
+    if (sticks(length(force), limit)) return Law::Contact::sticks;
+    return v_.directions == 1 && force[0] < 0.0 ? Law::Contact::slips_backwards : Law::Contact::slips_forwards;
+  }
+
+ private:
+  static std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
+
+  static bool sticks(double size, double limit) {
+    constexpr double round_off = 256.0 * std::numeric_limits<double>::epsilon();
+    return size < limit * (1.0 - round_off);
+  }
+
+  /// What presses; below zero where the ends are apart.
+  double pressing(const double* u) const { return v_.normal_stiffness * (u[v_.directions] - v_.gap); }
+
+  Pair travel(const BlockPoint& from, const BlockPoint& to) const {
+    Pair du{};
+    for (Index i = 0; i < v_.directions; ++i) du[idx(i)] = to.u[i] - from.u[i];
+    return du;
+  }
+
+  /// The force at the start of a step, within what presses then.
+  Pair start(double pressed, const double* memory) const {
+    Pair force{};
+    std::copy_n(memory, v_.directions, force.begin());
+    const double limit = v_.friction_coefficient * std::max(pressed, 0.0), size = length(force);
+    if (!(size > limit)) return force;
+    if (v_.directions == 1) return {std::copysign(limit, force[0]), 0.0};
+    return {force[0] * (limit / size), force[1] * (limit / size)};
+  }
+
+  /// From where the ends meet within the step, or at its start.
+  void close(const Pair& du, double begin, double end, BlockAnswer& answer) const {
+    const Index n = v_.directions;
+    const double rise = end - begin, touching = rise > 0.0 ? end / rise : 1.0, limit = v_.friction_coefficient * end;
+    const double size = length(du), trial = kt_ * touching * size;
+    if (trial <= limit) {
+      for (Index i = 0; i < n; ++i) {
+        answer.force[i] = kt_ * touching * du[idx(i)];
+        answer.by_u[i][i] = kt_ * touching;
+        if (rise > 0.0) answer.by_u[i][n] = v_.normal_stiffness * (-kt_ * du[idx(i)] * begin / (rise * rise));
+      }
+      return;
+    }
+    for (Index i = 0; i < n; ++i) {
+      const double e = n == 1 ? std::copysign(1.0, du[0]) : du[idx(i)] / size;
+      answer.force[i] = limit * e;
+      answer.by_u[i][n] = v_.normal_stiffness * v_.friction_coefficient * e;
+      for (Index j = 0; j < n && n > 1; ++j)
+        answer.by_u[i][j] = limit * ((i == j ? 1.0 : 0.0) - e * du[idx(j)] / size) / size;
+    }
+  }
+
+  void go_on(const Pair& force, const Pair& du, double begin, double end, BlockAnswer& answer) const {
+    const Index n = v_.directions;
+    const Pair trial{force[0] + kt_ * du[0], force[1] + kt_ * du[1]};
+    const double limit = v_.friction_coefficient * end;
+    if (length(trial) <= limit) {
+      for (Index i = 0; i < n; ++i) {
+        answer.force[i] = trial[idx(i)];
+        answer.by_u[i][i] = kt_;
+      }
+      return;
+    }
+    if (!(v_.friction_coefficient > 0.0)) return;
+    if (n == 1) {
+      answer.force[0] = std::copysign(limit, trial[0]);
+      answer.by_u[0][1] = v_.normal_stiffness * std::copysign(v_.friction_coefficient, trial[0]);
+      return;
+    }
+    const SlipOnCircle slip(force, du, begin, end, kt_, v_.friction_coefficient, n);
+    for (Index i = 0; i < n; ++i) answer.force[i] = slip.force()[idx(i)];
+    for (Index j = 0; j <= n; ++j) {
+      const Pair change = j < n ? slip.by_travel(j) : slip.by_normal();
+      for (Index i = 0; i < n; ++i) answer.by_u[i][j] = (j < n ? 1.0 : v_.normal_stiffness) * change[idx(i)];
+    }
+  }
+
+  ContactValues v_;
+  double kt_;
+};
+
+}  // namespace
+
+std::shared_ptr<const BlockLaw> make_elastic_contact(const ContactValues& values) {
+  return std::make_shared<ElasticContact>(values);
+}
+
+}  // namespace rubato::model
