@@ -25,6 +25,8 @@ std::vector<Row> rows() {
   std::vector<Row> rows{{"slider", "dry friction: a spring that slips at its limit", Element::slider},
                         {"stop", "a one-sided spring with a damper", Element::stop}};
   for (const model::LawKind& kind : model::law_kinds()) rows.push_back({kind.table, kind.meaning, Element::law});
+  rows.push_back(
+      {"contact", "friction in one or two directions under a spring across them that only pushes", Element::contact});
   rows.push_back({"slider under a load", "a slider whose normal_load is a formula of t or the force of another part",
                   Element::pressed_slider});
   rows.push_back({"joint friction", "of the joints of a mechanism", Element::joint_friction});

@@ -75,6 +75,17 @@ constexpr Row law{
     refuses(balanced_sweep),    // damper_curve
     refuses(),                  // method_study
 };
+constexpr Row contact{
+    takes("yes"),          // steps
+    refuses(small_steps),  // exact
+    takes("yes"),          // equilibrium
+    takes("stuck, free"),  // modes
+    refuses(transient),    // periodic
+    refuses(transient),    // harmonic_balance
+    refuses(transient),    // time_marching
+    refuses(transient),    // damper_curve
+    refuses(),             // method_study
+};
 constexpr Row pressed_slider{
     takes("yes"),            // steps
     refuses(small_steps),    // exact
@@ -109,7 +120,7 @@ constexpr Row lock{
     refuses(),             // method_study
 };
 // In the order of Element.
-constexpr std::array<Row, element_count> table{slider, stop, law, pressed_slider, joint_friction, lock};
+constexpr std::array<Row, element_count> table{slider, stop, law, contact, pressed_slider, joint_friction, lock};
 
 /// As messages call it.
 std::string label_of(const NonlinearPart& part, const std::vector<NonlinearPart>& all) {
@@ -119,6 +130,7 @@ std::string label_of(const NonlinearPart& part, const std::vector<NonlinearPart>
       return fmt::format("{} slider(s)", std::count_if(all.begin(), all.end(), is_alike));
     case Element::stop:
     case Element::law:
+    case Element::contact:
       return fmt::format("the {} \"{}\"", part.kind, part.name);
     case Element::pressed_slider:
       return fmt::format("the {} \"{}\", whose normal load does not stay the same", part.kind, part.name);

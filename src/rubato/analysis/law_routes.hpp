@@ -25,7 +25,7 @@ inline constexpr int route_count = 9;
 
 /// What a model may have that is not linear.
 using Element = integrate::NonlinearPart::Family;
-inline constexpr int element_count = 6;
+inline constexpr int element_count = 7;
 
 /// What a route does with an element.
 struct Handling {

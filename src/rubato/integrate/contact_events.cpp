@@ -35,10 +35,21 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
     events_.parts.push_back(law.name);
     watched_.push_back({i, 0.0, 0.0, branch_of_law(i, start)});
   }
+  for (Index b = 0; b < system.block_count(); ++b) {
+    const Index i = system.row_of_block(b);
+    parts_[static_cast<std::size_t>(i)] = events_.parts.size();
+    events_.parts.push_back(system.blocks()[static_cast<std::size_t>(b)].name);
+    watched_.push_back({i, 0.0, 0.0, branch_of_law(i, start)});
+  }
   events_.at_start = events_.all.size();
 }
 
 int ContactEvents::branch_of_law(Index contact, const system::State& state) const {
+  if (contact >= system_.first_block()) {
+    const Index b = system_.block_at(contact);
+    return static_cast<int>(system_.blocks()[static_cast<std::size_t>(b)].law->contact(
+        system_.block_point(b, state), state.memory.data() + system_.memory_of_block(b)));
+  }
   const Index law = contact - system_.first_law();
   return static_cast<int>(system_.laws()[static_cast<std::size_t>(law)].law->contact(
       system_.law_point(law, state, model::Side::left), state.memory.data() + system_.memory_of(law), 0.0));

@@ -32,7 +32,7 @@ class ContactEvents final : public Observer {
   std::vector<std::string> never_reached() const;
 
  private:
-  /// A slider, a stop, or a law that sticks and slips.
+  /// A slider, a stop, a law that sticks and slips, or a block by its first row.
   struct Watched {
     Index contact = 0;
     double slips_up = 0.0, slips_down = 0.0;  ///< at these forces or beyond; a stop is closed at the first [N]

@@ -54,6 +54,11 @@ void ContactProblem::set_slopes(Index contact, double k, double c) {
   factored_set_[0] = 3;  // no such state: forces a factorisation
 }
 
+void ContactProblem::add_slopes(Index contact, Index other, double k, double c) {
+  for (Index j = 0; j < m_; ++j)
+    scaled_compliance_(contact, j) += k * compliance_(other, j) + c * velocity_compliance_(other, j);
+}
+
 // Rows that always have their equation: f + Q f = trial.
 bool ContactProblem::solve_laws(const double* trial, double* force) {
   const auto& q = scaled_compliance_;

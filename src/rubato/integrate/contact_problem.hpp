@@ -43,6 +43,9 @@ class ContactProblem {
   /// it; that force, times the slope, is no part of its trial. The matrix of the problem is not symmetric then, and
   /// the pivots may not end: solve() says so.
   void add_slope(Index contact, Index other, double slope) { scaled_compliance_(contact, other) -= slope; }
+  /// Behind set_slopes(), of a law of several numbers: its force rises with u and du/dt of another contact as well, by
+  /// k and c. Not symmetric in general, either.
+  void add_slopes(Index contact, Index other, double k, double c);
   /// Sliders alone.
   void reset(const Matrix& compliance, const std::vector<model::Slider>& sliders);
 

@@ -10,6 +10,14 @@ double dissipated_by_law(const system::LocallyNonlinear& system, Index law, cons
       system.law_point(law, after, model::Side::left), after.memory.data() + memory);
 }
 
+double dissipated_by_block(const system::LocallyNonlinear& system, Index block, const system::State& before,
+                           const system::State& after) {
+  const Index memory = system.memory_of_block(block);
+  return system.blocks()[static_cast<std::size_t>(block)].law->dissipated(
+      system.block_point(block, before), before.memory.data() + memory, system.block_point(block, after),
+      after.memory.data() + memory);
+}
+
 std::vector<Account> accounts_of_laws() {
   return {{Account::Kind::stored, "law_stored", "elastic energy of the laws"},
           {Account::Kind::dissipated, "law_dissipated", "dissipated by the laws since the start"}};
@@ -19,10 +27,14 @@ void LawEnergy::add_stored(const system::State& state, Entries row) {
   for (Index j = 0; j < system_.law_count(); ++j)
     row[0] += system_.laws()[static_cast<std::size_t>(j)].law->stored_energy(
         system_.relative_displacement(system_.first_law() + j, state.q), state.memory.data() + system_.memory_of(j));
+  for (Index b = 0; b < system_.block_count(); ++b)
+    row[0] += system_.blocks()[static_cast<std::size_t>(b)].law->stored_energy(
+        system_.block_point(b, state).u, state.memory.data() + system_.memory_of_block(b));
 }
 
 void LawEnergy::add_flow(const system::State& before, const system::State& after, Entries row) {
   for (Index j = 0; j < system_.law_count(); ++j) row[1] += dissipated_by_law(system_, j, before, after);
+  for (Index b = 0; b < system_.block_count(); ++b) row[1] += dissipated_by_block(system_, b, before, after);
 }
 
 }  // namespace rubato::integrate

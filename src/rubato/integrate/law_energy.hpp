@@ -11,6 +11,10 @@ namespace rubato::integrate {
 double dissipated_by_law(const system::LocallyNonlinear& system, Index law, const system::State& before,
                          const system::State& after);
 
+/// Likewise a law of several numbers.
+double dissipated_by_block(const system::LocallyNonlinear& system, Index block, const system::State& before,
+                           const system::State& after);
+
 /// What laws store, then what they dissipate.
 std::vector<Account> accounts_of_laws();
 

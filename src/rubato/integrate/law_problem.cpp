@@ -73,12 +73,16 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
       start_(static_cast<std::size_t>(system.law_count())),
       end_(start_),
       answer_(start_.size()),
-      reach_(start_.size()),
+      block_start_(static_cast<std::size_t>(system.block_count())),
+      block_end_(block_start_.size()),
+      block_answer_(block_start_.size()),
+      reach_(static_cast<std::size_t>(m_ - boxes_)),
       first_u_(m_),
       first_v_(m_),
       whole_u_(m_),
       whole_v_(m_),
       known_(m_),
+      has_kinks_(system.has_normals() || system.block_count() > 0),
       slopes_are_bounded_(
           std::all_of(system.laws().begin(), system.laws().end(),
                       [](const model::LawBetween& law) { return std::isfinite(law.law->largest_stiffness()); })),
@@ -93,7 +97,7 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
 void LawProblem::reset(const Matrix& compliance, const Matrix& velocity_compliance) {
   compliance_ = compliance;
   velocity_compliance_ = velocity_compliance;
-  linearised_.reset(compliance, velocity_compliance, system_.sliders(), system_.stops(), system_.law_count());
+  linearised_.reset(compliance, velocity_compliance, system_.sliders(), system_.stops(), m_ - boxes_);
   if (boxes_ > 0)
     boxes_alone_.reset(compliance.topLeftCorner(boxes_, boxes_), velocity_compliance.topLeftCorner(boxes_, boxes_),
                        system_.sliders(), system_.stops());
@@ -158,18 +162,45 @@ double LawProblem::evaluate(const Vector& force, system::State& to) {
                                         std::abs(answer_[j].by_u) * (reach_[j] + size_[i]) +
                                         std::abs(answer_[j].by_rate) * (std::abs(v_free_[i]) + std::abs(v_[i])) +
                                         std::abs(answer_[j].by_normal * end_[j].normal));
-    const double error = std::abs(answer_[j].force - force[i]);
-    if (!std::isfinite(error)) {
-      worst_ = i;
-      return HUGE_VAL;
-    }
-    const double share = error == 0.0 ? 0.0 : error / std::max(round_off, std::numeric_limits<double>::min());
-    if (share >= largest) {
-      largest = share;
-      worst_ = i;
-    }
+    take_error(i, std::abs(answer_[j].force - force[i]), round_off, largest);
+    if (largest == HUGE_VAL) return largest;
   }
+  for (Index b = 0; b < system_.block_count() && largest < HUGE_VAL; ++b) evaluate_block(b, force, to, largest);
   return largest;
+}
+
+/// The largest error over its round-off so far; infinite from one that is no number on.
+void LawProblem::take_error(Index contact, double error, double round_off, double& largest) {
+  if (!std::isfinite(error)) {
+    worst_ = contact;
+    largest = HUGE_VAL;
+    return;
+  }
+  const double share = error == 0.0 ? 0.0 : error / std::max(round_off, std::numeric_limits<double>::min());
+  if (share >= largest) {
+    largest = share;
+    worst_ = contact;
+  }
+}
+
+void LawProblem::evaluate_block(Index block, const Vector& force, system::State& to, double& largest) {
+  const auto b = static_cast<std::size_t>(block);
+  const model::BlockLaw& law = *system_.blocks()[b].law;
+  const Index first = system_.row_of_block(block), place = system_.memory_of_block(block), size = law.size();
+  for (Index r = 0; r < size; ++r) {
+    block_end_[b].u[r] = u_[first + r];
+    block_end_[b].rate[r] = v_[first + r];
+  }
+  model::BlockAnswer& answer = block_answer_[b];
+  answer = law.advance(block_start_[b], memory_ + place, block_end_[b], to.memory.data() + place);
+  for (Index r = 0; r < size && largest < HUGE_VAL; ++r) {
+    const Index i = first + r;
+    double of_terms = std::abs(answer.force[r]) + std::abs(force[i]);
+    for (Index k = 0; k < size; ++k)
+      of_terms +=
+          std::abs(answer.by_u[r][k]) * (reach_[static_cast<std::size_t>(first + k - boxes_)] + size_[first + k]);
+    take_error(i, std::abs(answer.force[r] - force[i]), epsilon * of_terms, largest);
+  }
 }
 
 /// What presses on a law at the end of the step; an open stop presses with less than nothing.
@@ -195,6 +226,22 @@ void LawProblem::linearise() {
     linearised_.add_slope(i, by, a.by_normal);
     trial_[i] -= a.by_normal * end_[j].normal;
   }
+  for (Index b = 0; b < system_.block_count(); ++b) linearise_block(b);
+}
+
+void LawProblem::linearise_block(Index block) {
+  const model::BlockAnswer& a = block_answer_[static_cast<std::size_t>(block)];
+  const Index first = system_.row_of_block(block), size = system_.blocks()[static_cast<std::size_t>(block)].law->size();
+  for (Index r = 0; r < size; ++r) {
+    const Index i = first + r;
+    trial_[i] = a.force[r];
+    linearised_.set_slopes(i, 0.0, 0.0);
+    for (Index k = 0; k < size; ++k) {
+      if (a.by_u[r][k] == 0.0) continue;
+      linearised_.add_slopes(i, first + k, a.by_u[r][k], 0.0);
+      trial_[i] += a.by_u[r][k] * (u_free_[first + k] - u_[first + k]);
+    }
+  }
 }
 
 /// Forces that no other changes, of laws that slip or are open, without the round-off of the equations of others:
@@ -206,6 +253,13 @@ void LawProblem::take_known_forces(bool of_all_laws) {
         a.by_u == 0.0 && a.by_rate == 0.0 && (a.by_normal == 0.0 || system_.normal_contact(static_cast<Index>(j)) < 0);
     const Index i = boxes_ + static_cast<Index>(j);
     if (is_known && (of_all_laws || system_.laws()[j].law->takes_normal())) next_[i] = trial_[i];
+  }
+  for (Index b = 0; b < system_.block_count(); ++b) {
+    const model::BlockAnswer& a = block_answer_[static_cast<std::size_t>(b)];
+    const Index first = system_.row_of_block(b), size = system_.blocks()[static_cast<std::size_t>(b)].law->size();
+    for (Index r = 0; r < size; ++r)
+      if (std::all_of(a.by_u[r], a.by_u[r] + size, [](double slope) { return slope == 0.0; }))
+        next_[first + r] = trial_[first + r];
   }
 }
 
@@ -231,6 +285,17 @@ void LawProblem::start(const system::State& from, const system::State& to) {
     for (std::size_t s = joined_start_[j]; s < joined_start_[j + 1]; ++s)
       reach_[j] = std::max(reach_[j], std::abs(joined_[s].weight * from.q[joined_[s].coordinate]));
   }
+  for (std::size_t b = 0; b < block_start_.size(); ++b) {
+    const auto block = static_cast<Index>(b);
+    block_start_[b] = system_.block_point(block, from);
+    const Index first = system_.row_of_block(block);
+    for (Index i = first; i < first + system_.blocks()[b].law->size(); ++i) {
+      const auto j = static_cast<std::size_t>(i - boxes_);
+      reach_[j] = std::max(std::abs(block_start_[b].u[i - first]), std::abs(u_free_[i]));
+      for (std::size_t s = joined_start_[j]; s < joined_start_[j + 1]; ++s)
+        reach_[j] = std::max(reach_[j], std::abs(joined_[s].weight * from.q[joined_[s].coordinate]));
+    }
+  }
   force_ = from.slider_force;
 }
 
@@ -253,12 +318,12 @@ StepReport LawProblem::solve(const system::State& from, system::State& to) {
   constexpr double fair = 1e6;    // a correction that no longer helps leaves at most 1e-10 of the forces
   constexpr double better = 1e3;  // beside a kink it may be a piece of the law that is not that of the solution
   start(from, to);
-  numerics::NewtonOutcome outcome = iterate(from, to, false, system_.has_normals() ? better : fair);
+  numerics::NewtonOutcome outcome = iterate(from, to, false, has_kinks_ ? better : fair);
   if (outcome != numerics::NewtonOutcome::converged) {
     const Index worst = worst_;
     // Else a solution far away may be none of the motion from the start; the forces that press are near.
-    bool is_solved = (slopes_are_bounded_ || system_.has_normals()) && solve_by_parts(from, to);
-    if (!is_solved && system_.has_normals()) {
+    bool is_solved = (slopes_are_bounded_ || has_kinks_) && solve_by_parts(from, to);
+    if (!is_solved && has_kinks_) {
       force_ = from.slider_force;
       outcome = iterate(from, to, false, fair);
       is_solved = outcome == numerics::NewtonOutcome::converged;

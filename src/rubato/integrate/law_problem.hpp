@@ -16,7 +16,8 @@ namespace rubato::integrate {
 /// by Newton's method on the laws, with their consistent tangents; sliders and stops are solved for exactly at every
 /// iteration (ContactProblem), so that it is the method of Josephy (1979) for generalised equations. A step that does
 /// not bring the laws nearer to their equations is shortened. The force of a contact that presses on a law enters the
-/// linear row of the law, which makes the linear problem unsymmetric.
+/// linear row of the law, which makes the linear problem unsymmetric; so do laws of several numbers, whose rows are
+/// linear in all of them.
 class LawProblem {
  public:
   explicit LawProblem(const system::LocallyNonlinear& system);
@@ -41,10 +42,13 @@ class LawProblem {
   bool solve_by_parts(const system::State& from, system::State& to);
   void press(Index law, const Vector& force);
   void linearise();
+  void linearise_block(Index block);
   void take_known_forces(bool of_all_laws);
   bool solve_boxes(const system::State& from, Vector& force);
   void set_box_trials(const system::State& from);
   double evaluate(const Vector& force, system::State& to);
+  void evaluate_block(Index block, const Vector& force, system::State& to, double& largest);
+  void take_error(Index contact, double error, double round_off, double& largest);
   StepReport failure(StepOutcome outcome) const;
 
   const system::LocallyNonlinear& system_;
@@ -52,15 +56,18 @@ class LawProblem {
   Matrix compliance_, velocity_compliance_;
   ContactProblem linearised_, boxes_alone_;
   Vector u_free_, v_free_, trial_, penetration_, box_trial_, box_penetration_;
-  Vector force_, next_, trial_force_, u_, v_;  // of all contacts
-  Vector size_;                                // of what forces do to u, all of it added: its round-off
-  const double* memory_ = nullptr;             // of the laws at the start of the step
-  std::vector<model::LawPoint> start_, end_;   // of each law
-  std::vector<model::LawAnswer> answer_;       // of each law, at end_
-  std::vector<double> reach_;                  // the largest displacement behind u of each law: its round-off
+  Vector force_, next_, trial_force_, u_, v_;               // of all contacts
+  Vector size_;                                             // of what forces do to u, all of it added: its round-off
+  const double* memory_ = nullptr;                          // of the laws at the start of the step
+  std::vector<model::LawPoint> start_, end_;                // of each law
+  std::vector<model::LawAnswer> answer_;                    // of each law, at end_
+  std::vector<model::BlockPoint> block_start_, block_end_;  // of each block
+  std::vector<model::BlockAnswer> block_answer_;
+  std::vector<double> reach_;  // the largest displacement behind u of each law and row of a block: its round-off
   Vector first_u_, first_v_, whole_u_, whole_v_, known_;  // of a motion that is made in parts
+  bool has_kinks_;                    // more than those of a law alone: laws that are pressed, and blocks
   bool slopes_are_bounded_;           // else a solution far away may be none of the motion from the start
-  std::vector<model::Share> joined_;  // what laws join, those of law j from joined_start_[j]
+  std::vector<model::Share> joined_;  // what laws and rows of blocks join, those of j from joined_start_[j]
   std::vector<std::size_t> joined_start_;
   Index worst_ = -1;
 };

@@ -126,7 +126,7 @@ void SupportEnergy::add_flow(const system::State& before, const system::State& a
 std::vector<std::unique_ptr<EnergyPart>> energy_parts(const system::LocallyNonlinear& system, Balance& balance) {
   std::vector<std::unique_ptr<EnergyPart>> parts;
   parts.push_back(std::make_unique<StructureEnergy>(system));
-  if (system.law_count() > 0) parts.push_back(std::make_unique<LawEnergy>(system));
+  if (system.has_laws()) parts.push_back(std::make_unique<LawEnergy>(system));
   if (system.supports()) parts.push_back(std::make_unique<SupportEnergy>(system, balance));
   return parts;
 }

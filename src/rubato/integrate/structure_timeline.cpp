@@ -131,6 +131,7 @@ StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::
 }
 
 StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system::State& from) const {
+  if (contact >= system_.first_block()) return Watch::nothing;
   if (contact >= system_.first_law()) return watches_sliders_ ? Watch::law : Watch::nothing;
   if (contact >= system_.slider_count()) return watch_of_stop(contact, from);
   return watches_sliders_ ? watch_of_slider(contact, from) : Watch::nothing;

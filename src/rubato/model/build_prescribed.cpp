@@ -84,6 +84,10 @@ std::string contact_at(const Model& model, Index coordinate) {
     if (joins(law) || std::any_of(law.shares.begin(), law.shares.end(),
                                   [&](const Share& share) { return share.coordinate == coordinate; }))
       return law.name;
+  for (const BlockBetween& block : model.blocks)
+    for (const std::vector<Share>& column : block.columns)
+      if (std::any_of(column.begin(), column.end(), [&](const Share& share) { return share.coordinate == coordinate; }))
+        return block.name;
   return {};
 }
 

@@ -2,11 +2,13 @@
 
 #include <rubato/core/types.hpp>
 #include <rubato/model/description.hpp>
+#include <rubato/model/laws/block_law.hpp>
 #include <rubato/model/laws/law.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/model/time_law.hpp>
 #include <rubato/numerics/formula.hpp>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,6 +79,14 @@ struct LawBetween {
   NormalForce normal = {};         ///< of a law that takes one
 };
 
+/// A law of several numbers, each of which is a sum of coordinates times weights; -force_i du_i/dx acts on each.
+struct BlockBetween {
+  std::string name;
+  std::string kind;  ///< its table in the study file
+  std::shared_ptr<const BlockLaw> law;
+  std::array<std::vector<Share>, largest_block> columns = {};  ///< of its numbers
+};
+
 struct Force {
   Index coordinate = 0;
   TimeLaw law;  ///< [N]
@@ -136,6 +146,7 @@ struct Model {
   std::vector<Slider> sliders;
   std::vector<Stop> stops;
   std::vector<LawBetween> laws;
+  std::vector<BlockBetween> blocks;
   std::vector<Force> forces;
   std::vector<DistributedForce> distributed_forces;
   std::vector<Held> held_forces, held_displacements;

@@ -9,7 +9,7 @@ namespace {
 
 using system::LocallyNonlinear;
 
-bool is_linear(const LocallyNonlinear& system) { return system.slider_count() == 0 && system.law_count() == 0; }
+bool is_linear(const LocallyNonlinear& system) { return system.slider_count() == 0 && !system.has_laws(); }
 
 std::unique_ptr<SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
                                      const SteadyRequest& request, bool stuck) {

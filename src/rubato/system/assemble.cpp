@@ -245,6 +245,7 @@ AssembledModel assemble_with_loads(const model::Model& model) {
   parts.sliders = model.sliders;
   parts.stops = model.stops;
   parts.laws = model.laws;
+  parts.blocks = model.blocks;
   std::vector<ModelLoad> loads = loads_of(model, parts.mass);
   parts.start.q = model.position;
   parts.start.v = model.velocity;

@@ -130,6 +130,9 @@ void eliminate_supports(LocallyNonlinear::Parts& parts, std::span<const model::P
     move_contact(law);
     for (model::Share& share : law.shares) move_end(share.coordinate);
   }
+  for (auto& block : parts.blocks)
+    for (std::vector<model::Share>& column : block.columns)
+      for (model::Share& share : column) move_end(share.coordinate);
   parts.start.q = free_entries(parts.start.q, split);
   parts.start.v = free_entries(parts.start.v, split);
   std::vector<std::string> names(static_cast<std::size_t>(f));

@@ -38,6 +38,7 @@ LocallyNonlinear::LocallyNonlinear(Parts parts) : parts_(std::move(parts)) {
     has_laws_of_time_ = has_laws_of_time_ || law.law->depends_on_time() || law.normal.formula;
   }
   order_laws();
+  place_blocks();
   if (start.memory.size() == 0) start.memory = Vector::Zero(memory_size_);
   assert(start.memory.size() == memory_size_);
   if (start.slider_force.size() == 0) start.slider_force = Vector::Zero(contact_count());
@@ -85,6 +86,37 @@ void LocallyNonlinear::order_laws() {
   }
 }
 
+void LocallyNonlinear::place_blocks() {
+  for (const model::BlockBetween& block : parts_.blocks) {
+    block_row_.push_back(contact_count());
+    block_memory_.push_back(memory_size_);
+    memory_size_ += block.law->memory_size();
+    for (Index i = 0; i < block.law->size(); ++i) {
+      for (const model::Share& share : block.columns[static_cast<std::size_t>(i)])
+        shares_.push_back({contact_count(), share.coordinate, share.weight});
+      contacts_.push_back({});
+    }
+  }
+  first_share_.assign(contacts_.size() + 1, 0);
+  for (const ContactShare& share : shares_) ++first_share_[static_cast<std::size_t>(share.contact) + 1];
+  std::partial_sum(first_share_.begin(), first_share_.end(), first_share_.begin());
+}
+
+Index LocallyNonlinear::block_at(Index contact) const {
+  const auto after = std::upper_bound(block_row_.begin(), block_row_.end(), contact);
+  return static_cast<Index>(after - block_row_.begin()) - 1;
+}
+
+model::BlockPoint LocallyNonlinear::block_point(Index b, const State& state) const {
+  model::BlockPoint point;
+  const Index first = row_of_block(b), size = parts_.blocks[static_cast<std::size_t>(b)].law->size();
+  for (Index i = 0; i < size; ++i) {
+    point.u[i] = relative_displacement(first + i, state.q);
+    point.rate[i] = relative_displacement(first + i, state.v);
+  }
+  return point;
+}
+
 double LocallyNonlinear::normal_force(Index j, const State& state, const Vector& contact_force,
                                       model::Side side) const {
   const model::LawBetween& law = parts_.laws[static_cast<std::size_t>(j)];
@@ -98,9 +130,9 @@ double LocallyNonlinear::normal_force(Index j, const State& state, const Vector&
 }
 
 bool LocallyNonlinear::has_friction() const {
-  return slider_count() > 0 || std::any_of(parts_.laws.begin(), parts_.laws.end(), [](const model::LawBetween& law) {
-           return law.law->sticking_stiffness() > 0.0;
-         });
+  return slider_count() > 0 || block_count() > 0 ||
+         std::any_of(parts_.laws.begin(), parts_.laws.end(),
+                     [](const model::LawBetween& law) { return law.law->sticking_stiffness() > 0.0; });
 }
 
 void LocallyNonlinear::add_slider_forces(const Vector& slider_force, double factor, Vector& out) const {
@@ -123,8 +155,8 @@ std::vector<model::Share> LocallyNonlinear::column(Index contact) const {
   return column;
 }
 
-bool LocallyNonlinear::is_law_of_rotations(Index law) const {
-  const std::vector<model::Share> joined = column(first_law() + law);
+bool LocallyNonlinear::is_of_rotations(Index contact) const {
+  const std::vector<model::Share> joined = column(contact);
   return std::all_of(joined.begin(), joined.end(),
                      [&](const model::Share& share) { return is_rotation(share.coordinate); });
 }
@@ -140,6 +172,11 @@ void LocallyNonlinear::find_law_forces(const State& state, model::Side side, Vec
                                 has_normals_ ? normal_force(j, state, contact_force, side) : 0.0};
     contact_force[i] =
         parts_.laws[static_cast<std::size_t>(j)].law->at(point, state.memory.data() + memory_of(j)).force;
+  }
+  for (Index b = 0; b < block_count(); ++b) {
+    const model::BlockLaw& law = *parts_.blocks[static_cast<std::size_t>(b)].law;
+    const model::BlockAnswer answer = law.at(block_point(b, state), state.memory.data() + memory_of_block(b));
+    std::copy_n(answer.force, law.size(), contact_force.data() + row_of_block(b));
   }
 }
 
@@ -159,6 +196,13 @@ void LocallyNonlinear::move_laws(const State& before, State& state) const {
             ->advance(law_point(j, before, model::Side::right), before.memory.data() + memory_of(j),
                       law_point(j, state, model::Side::left), state.memory.data() + memory_of(j))
             .force;
+  for (Index b = 0; b < block_count(); ++b) {
+    const model::BlockLaw& law = *parts_.blocks[static_cast<std::size_t>(b)].law;
+    const Index place = memory_of_block(b);
+    const model::BlockAnswer answer = law.advance(block_point(b, before), before.memory.data() + place,
+                                                  block_point(b, state), state.memory.data() + place);
+    std::copy_n(answer.force, law.size(), state.slider_force.data() + row_of_block(b));
+  }
 }
 
 SparseMatrix LocallyNonlinear::with_contacts(const SparseMatrix& matrix,
@@ -184,8 +228,19 @@ std::vector<double> LocallyNonlinear::law_slopes(double model::LawAnswer::*slope
   return coefficients;
 }
 
+void LocallyNonlinear::set_block_limits(bool is_stuck, std::vector<double>& coefficients) const {
+  for (Index b = 0; b < block_count(); ++b) {
+    const model::BlockLaw& law = *parts_.blocks[static_cast<std::size_t>(b)].law;
+    for (Index i = 0; i < law.size(); ++i)
+      coefficients[static_cast<std::size_t>(row_of_block(b) + i)] = law.limit_stiffness(i, is_stuck);
+  }
+}
+
 SparseMatrix LocallyNonlinear::free_stiffness() const {
-  return law_count() == 0 ? parts_.stiffness : with_contacts(parts_.stiffness, law_slopes(&model::LawAnswer::by_u));
+  if (!has_laws()) return parts_.stiffness;
+  std::vector<double> coefficients = law_slopes(&model::LawAnswer::by_u);
+  set_block_limits(false, coefficients);
+  return with_contacts(parts_.stiffness, coefficients);
 }
 
 SparseMatrix LocallyNonlinear::free_damping() const {
@@ -197,7 +252,12 @@ SparseMatrix LocallyNonlinear::stuck_stiffness() const {
   for (const auto& slider : parts_.sliders) coefficients.push_back(slider.stiffness);
   coefficients.resize(static_cast<std::size_t>(first_law()), 0.0);
   for (const auto& law : parts_.laws) coefficients.push_back(law.law->sticking_stiffness());
-  return with_contacts(free_stiffness(), coefficients);
+  if (block_count() == 0) return with_contacts(free_stiffness(), coefficients);
+  coefficients.resize(contacts_.size());
+  std::vector<double> without = law_slopes(&model::LawAnswer::by_u);
+  for (std::size_t i = 0; i < without.size(); ++i) coefficients[i] += without[i];
+  set_block_limits(true, coefficients);
+  return with_contacts(parts_.stiffness, coefficients);
 }
 
 SparseMatrix LocallyNonlinear::closed_stiffness() const {
@@ -210,6 +270,7 @@ SparseMatrix LocallyNonlinear::closed_stiffness() const {
     if (std::isfinite(largest)) coefficients[i] = largest;
     ++i;
   }
+  set_block_limits(true, coefficients);
   return with_contacts(parts_.stiffness, coefficients);
 }
 

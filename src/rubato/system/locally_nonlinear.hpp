@@ -20,10 +20,11 @@ namespace rubato::system {
 ///   sliders  fc = clamp(fc_old + kT (u - u_old), -limit, limit)
 ///   stops    fc = max(0, k (u - gap) + c du/dt) while u > gap, else 0
 ///   others   fc = a law of u, du/dt and t with a memory of its own (model::Law)
+///   blocks   a few fc at a time = a law of as many u with a memory of its own (model::BlockLaw)
 ///
 /// with constant symmetric M (positive definite), C and K [n x n] and the columns of B [n x m], e_first - e_second of
-/// each slider and stop, a few shares of coordinates of each other law: the sliders, then the stops, then the laws.
-/// Immutable; integrators keep what moves in a State and in their workspace.
+/// each slider and stop, a few shares of coordinates of each other law: the sliders, then the stops, then the laws,
+/// then the rows of the blocks. Immutable; integrators keep what moves in a State and in their workspace.
 class LocallyNonlinear final : public System {
  public:
   struct Parts {
@@ -31,6 +32,7 @@ class LocallyNonlinear final : public System {
     std::vector<model::Slider> sliders;
     std::vector<model::Stop> stops;
     std::vector<model::LawBetween> laws;
+    std::vector<model::BlockBetween> blocks;
     Loads loads;
     State start;  ///< t = 0; q, v of the model; sliders without force; stops and laws as q and v have them
     std::vector<std::string> coordinates;  ///< names for messages and results, [n]
@@ -47,6 +49,9 @@ class LocallyNonlinear final : public System {
   Index slider_count() const { return static_cast<Index>(parts_.sliders.size()); }
   Index stop_count() const { return static_cast<Index>(parts_.stops.size()); }
   Index law_count() const { return static_cast<Index>(parts_.laws.size()); }
+  Index block_count() const { return static_cast<Index>(parts_.blocks.size()); }
+  /// Whether anything acts beside sliders and stops.
+  bool has_laws() const { return law_count() > 0 || block_count() > 0; }
   Index contact_count() const { return static_cast<Index>(contacts_.size()); }
   const SparseMatrix& mass() const { return parts_.mass; }
   const SparseMatrix& damping() const { return parts_.damping; }
@@ -54,11 +59,19 @@ class LocallyNonlinear final : public System {
   const std::vector<model::Slider>& sliders() const { return parts_.sliders; }
   const std::vector<model::Stop>& stops() const { return parts_.stops; }
   const std::vector<model::LawBetween>& laws() const { return parts_.laws; }
+  const std::vector<model::BlockBetween>& blocks() const { return parts_.blocks; }
+  /// The first row of block b among the contacts, and where its memory begins in that of a state.
+  Index row_of_block(Index b) const { return block_row_[static_cast<std::size_t>(b)]; }
+  Index memory_of_block(Index b) const { return block_memory_[static_cast<std::size_t>(b)]; }
+  /// The block to which a contact belongs; -1: none.
+  Index block_at(Index contact) const;
   /// Where the memory of law j begins in that of a state.
   Index memory_of(Index j) const { return memory_start_[static_cast<std::size_t>(j)]; }
   Index memory_size() const { return memory_size_; }
   /// The first of the laws among the contacts.
   Index first_law() const { return slider_count() + stop_count(); }
+  /// The first row of the blocks.
+  Index first_block() const { return first_law() + law_count(); }
   /// What a contact joins: that of a slider, of a stop or of another law.
   struct Ends {
     Index first = ground, second = ground;
@@ -72,8 +85,10 @@ class LocallyNonlinear final : public System {
   const std::vector<ContactShare>& shares() const { return shares_; }
   /// The column of B of a contact: its coordinates with their weights, without the ground.
   std::vector<model::Share> column(Index contact) const;
+  /// Whether u of a contact is in [rad]: all that it joins are rotations.
+  bool is_of_rotations(Index contact) const;
   /// Whether u of a law is in [rad]: all that it joins are rotations.
-  bool is_law_of_rotations(Index law) const;
+  bool is_law_of_rotations(Index law) const { return is_of_rotations(first_law() + law); }
   const Loads& loads() const { return parts_.loads; }
   const State& start() const { return parts_.start; }
   const std::vector<std::string>& coordinates() const override { return parts_.coordinates; }
@@ -94,9 +109,10 @@ class LocallyNonlinear final : public System {
   double relative_displacement(Index i, const Vector& q) const {
     const Ends& s = contacts_[static_cast<std::size_t>(i)];
     double u = (s.first == ground ? 0.0 : q[s.first]) - (s.second == ground ? 0.0 : q[s.second]);
-    if (!shares_.empty())
-      for (const ContactShare& share : shares_)
-        if (share.contact == i) u += share.weight * q[share.coordinate];
+    if (shares_.empty()) return u;
+    const auto contact = static_cast<std::size_t>(i);
+    for (std::size_t k = first_share_[contact]; k < first_share_[contact + 1]; ++k)
+      u += shares_[k].weight * q[shares_[k].coordinate];
     return u;
   }
   /// fs of stop j at given displacements and velocities [N]
@@ -112,6 +128,8 @@ class LocallyNonlinear final : public System {
     return {relative_displacement(i, state.q), relative_displacement(i, state.v), state.t, side,
             has_normals_ ? normal_force(j, state, state.slider_force, side) : 0.0};
   }
+  /// What block b sees at a state.
+  model::BlockPoint block_point(Index b, const State& state) const;
   /// Whether a law takes a normal force.
   bool has_normals() const { return has_normals_; }
   /// The contact whose force presses on law j; -1 where a number or a formula of t does, or nothing.
@@ -147,15 +165,19 @@ class LocallyNonlinear final : public System {
 
  private:
   void order_laws();
+  void place_blocks();
   /// The slopes of the laws where nothing has moved yet and nothing presses, as coefficients of all contacts; others
   /// are zero.
   std::vector<double> law_slopes(double model::LawAnswer::*slope) const;
+  /// Sets the coefficients of the rows of the blocks to their stiffness in a limit of small motions.
+  void set_block_limits(bool is_stuck, std::vector<double>& coefficients) const;
   SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
 
   Parts parts_;
   std::vector<Ends> contacts_;
   std::vector<ContactShare> shares_;
-  std::vector<Index> memory_start_;
+  std::vector<std::size_t> first_share_;  // of each contact, and the count
+  std::vector<Index> memory_start_, block_row_, block_memory_;
   Index memory_size_ = 0;
   std::vector<Index> normal_contact_, law_order_;  // of each law; laws behind those that press on them
   bool has_normals_ = false;

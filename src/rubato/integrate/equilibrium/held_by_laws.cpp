@@ -20,7 +20,7 @@ std::vector<Index> floating(const SparseMatrix& given) {
 }  // namespace
 
 std::vector<Index> held_by_laws_alone(const system::LocallyNonlinear& system) {
-  if (system.law_count() == 0 || system.size() == 0) return {};
+  if (!system.has_laws() || system.size() == 0) return {};
   std::vector<Index> moving = floating(system.stiffness());
   if (moving.empty() || !floating(system.free_stiffness()).empty()) return {};
   return moving;

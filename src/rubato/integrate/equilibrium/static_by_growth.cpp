@@ -44,7 +44,10 @@ class Growth final : public numerics::NewtonProblem {
     most_summands_ = most_summands();
     tangent_.emplace(system, place_, static_cast<Index>(free_.size()));
     if (!free_.empty()) factor_.analyse(tangent_->with(slope_));
+    reach_.setZero(system.contact_count());
+    block_slopes_.resize(static_cast<std::size_t>(system.block_count()));
     take_normals();
+    is_symmetric_ = is_symmetric_ && system.block_count() == 0;
     for (const model::LawBetween& law : system.laws())
       slopes_are_bounded_ = slopes_are_bounded_ && std::isfinite(law.law->largest_stiffness());
   }
@@ -104,12 +107,17 @@ class Growth final : public numerics::NewtonProblem {
       double reach = 0.0;
       const auto& column = columns_[static_cast<std::size_t>(i)];
       for (const auto& [place, weight] : column) reach += std::abs(weight * state_.q[place]);
+      reach_[i] = reach;
       for (const auto& [place, weight] : column) {
         const double share = std::abs(weight);
         diagonal_[place] += share * share * std::abs(slope_[i]);
         terms_[place] += share * (std::abs(state_.slider_force[i]) + std::abs(slope_[i]) * reach);
       }
     }
+    for_each_cross_slope([&](Index i, Index k, double slope) {
+      for (const auto& [place, weight] : columns_[static_cast<std::size_t>(i)])
+        terms_[place] += std::abs(weight * slope) * reach_[k];
+    });
     is_round_off_ = true;
     double sum = 0.0, of_terms = 0.0;
     for (const Index i : free_) {
@@ -223,6 +231,34 @@ class Growth final : public numerics::NewtonProblem {
       }
     }
     for (const Index law : system_.law_order()) load_law(law);
+    for (Index b = 0; b < system_.block_count(); ++b) load_block(b);
+  }
+
+  /// From rest, in a straight line.
+  void load_block(Index b) {
+    const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(b)].law;
+    const Index first = system_.row_of_block(b), memory = system_.memory_of_block(b);
+    virgin_.setZero(system_.memory_size());
+    model::BlockPoint to;
+    for (Index i = 0; i < law.size(); ++i) to.u[i] = system_.relative_displacement(first + i, state_.q);
+    model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
+    answer = law.advance({}, virgin_.data() + memory, to, state_.memory.data() + memory);
+    for (Index i = 0; i < law.size(); ++i) {
+      state_.slider_force[first + i] = answer.force[i];
+      slope_[first + i] = answer.by_u[i][i];
+    }
+  }
+
+  /// Of forces of blocks by other numbers than their own: take(contact, other contact, slope).
+  template <class Take>
+  void for_each_cross_slope(const Take& take) const {
+    for (Index b = 0; b < system_.block_count(); ++b) {
+      const Index first = system_.row_of_block(b), size = system_.blocks()[static_cast<std::size_t>(b)].law->size();
+      const model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
+      for (Index i = 0; i < size; ++i)
+        for (Index k = 0; k < size; ++k)
+          if (i != k && answer.by_u[i][k] != 0.0) take(first + i, first + k, answer.by_u[i][k]);
+    }
   }
 
   void load_law(Index law) {
@@ -258,9 +294,15 @@ class Growth final : public numerics::NewtonProblem {
   }
 
   /// With what normal forces that follow from the motion add: the force of a law changes by
-  ///   df = slope b^T dq + (df/dN) dN,   dN the change of the force that presses, by the same formula
+  ///   df = slope b^T dq + (df/dN) dN,   dN the change of the force that presses, by the same formula,
+  /// and with the slopes of blocks by other numbers than their own.
   bool factorise_with_normals() {
     std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](const model::Share& row, const model::Share& column, double slope) {
+      const Index to = place_[static_cast<std::size_t>(row.coordinate)];
+      const Index from = place_[static_cast<std::size_t>(column.coordinate)];
+      if (to != ground && from != ground) entries.emplace_back(to, from, row.weight * column.weight * slope);
+    };
     std::vector<std::vector<model::Share>> changes(static_cast<std::size_t>(system_.law_count()));
     for (const Index law : system_.law_order()) {
       const Index by = system_.normal_contact(law);
@@ -272,12 +314,12 @@ class Growth final : public numerics::NewtonProblem {
         for (const model::Share& share : changes[static_cast<std::size_t>(by - system_.first_law())])
           change.push_back({share.coordinate, by_normal_[law] * share.weight});
       for (const model::Share& row : columns_[static_cast<std::size_t>(system_.first_law() + law)])
-        for (const model::Share& column : change) {
-          const Index to = place_[static_cast<std::size_t>(row.coordinate)];
-          const Index from = place_[static_cast<std::size_t>(column.coordinate)];
-          if (to != ground && from != ground) entries.emplace_back(to, from, row.weight * column.weight);
-        }
+        for (const model::Share& column : change) add(row, column, 1.0);
     }
+    for_each_cross_slope([&](Index i, Index k, double slope) {
+      for (const model::Share& row : columns_[static_cast<std::size_t>(i)])
+        for (const model::Share& column : columns_[static_cast<std::size_t>(k)]) add(row, column, slope);
+    });
     const auto n = static_cast<Index>(free_.size());
     SparseMatrix added(n, n);
     added.setFromTriplets(entries.begin(), entries.end());
@@ -328,6 +370,8 @@ class Growth final : public numerics::NewtonProblem {
   bool has_full_steps_ = false;     // whether the residual falls or not
   bool slopes_are_bounded_ = true;  // else an equilibrium far away may be one that loads do not lead to
   Vector accepted_, change_, residual_, slope_, virgin_;
+  Vector reach_;  // of each contact, what its u is made of
+  std::vector<model::BlockAnswer> block_slopes_;
   Vector by_normal_, normal_at_rest_;  // of each law: df/dN, and what presses where nothing has moved
 };
 

@@ -288,7 +288,7 @@ class StaticSolver {
 }  // namespace
 
 StaticEquilibrium find_equilibrium(const system::LocallyNonlinear& system, std::span<const model::Held> held) {
-  if (system.law_count() > 0) return grow_equilibrium(system, held);
+  if (system.has_laws()) return grow_equilibrium(system, held);
   return StaticSolver(system, held).solve();
 }
 

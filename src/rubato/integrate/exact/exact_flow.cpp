@@ -30,11 +30,11 @@ void require_possible(const system::LocallyNonlinear& system) {
         fmt::format("the method exact knows sliders, and the model has the stop \"{}\"; take "
                     "\"generalized_alpha\" with step = {{ tolerance = ..., events = \"locate\" }}",
                     system.stops().front().name));
-  if (system.law_count() > 0)
+  if (system.has_laws())
     throw InvalidInput(
         fmt::format("the method exact knows sliders, and the model has the law \"{}\"; take "
                     "\"generalized_alpha\" with step = {{ tolerance = ... }}",
-                    system.laws().front().name));
+                    system.law_count() > 0 ? system.laws().front().name : system.blocks().front().name));
   for (const auto& term : system.loads().terms())
     if (const auto* formula = std::get_if<model::FormulaLaw>(&term.law))
       throw InvalidInput(

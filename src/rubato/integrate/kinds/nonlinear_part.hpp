@@ -10,6 +10,7 @@ struct NonlinearPart {
     slider,
     stop,
     law,             ///< of any kind in model/laws
+    contact,         ///< of friction and separation, a law of several numbers
     pressed_slider,  ///< whose normal load follows from t or from the force of another part
     joint_friction,
     lock

@@ -46,9 +46,10 @@ std::string StructureKind::summary() const {
   const auto laws_that_slip =
       std::count_if(system_.laws().begin(), system_.laws().end(),
                     [](const model::LawBetween& law) { return law.law->sticking_stiffness() > 0.0; });
-  return fmt::format("{}, {}{}", counted(system_.size(), "coordinate"),
+  return fmt::format("{}, {}{}{}", counted(system_.size(), "coordinate"),
                      counted(system_.slider_count() + laws_that_slip, "slider"),
-                     system_.stop_count() > 0 ? ", " + counted(system_.stop_count(), "stop") : "");
+                     system_.stop_count() > 0 ? ", " + counted(system_.stop_count(), "stop") : "",
+                     system_.block_count() > 0 ? ", " + counted(system_.block_count(), "contact") : "");
 }
 
 std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
@@ -60,6 +61,7 @@ std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
     parts.push_back({is_pressed ? NonlinearPart::Family::pressed_slider : NonlinearPart::Family::law, law.kind,
                      law.name, law.law->depends_on_time() || law.normal.formula});
   }
+  for (const auto& block : system_.blocks()) parts.push_back({NonlinearPart::Family::contact, block.kind, block.name});
   return parts;
 }
 

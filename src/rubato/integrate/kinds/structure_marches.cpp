@@ -88,6 +88,12 @@ void StructureMarches::plan_events(const std::string& title, const model::StepDe
                       "error estimate does not see; leave it out",
                       title, plan.method.name, law.name));
   }
+  if (is_pair && system_.block_count() > 0)
+    throw InvalidInput(description.where,
+                       fmt::format("{}{} with steps that choose themselves does not see where \"{}\" slips, opens and "
+                                   "closes within a step, nor does its error estimate; take \"generalized_alpha\", or "
+                                   "equal steps",
+                                   title, plan.method.name, system_.blocks().front().name));
   step.locate_sliders = is_pair || description.locate_events.has_value();
   step.locate_events = description.locate_events.value_or(system_.stop_count() > 0 ||
                                                           (is_pair && (system_.slider_count() > 0 || has_memory)));

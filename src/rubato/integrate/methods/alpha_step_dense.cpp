@@ -34,7 +34,7 @@ class DenseAlphaStep final : public AlphaStep {
     for (const auto& slider : system.sliders()) stiffness_.push_back(slider.stiffness);
     trial_.resize(m_);
     penetration_.resize(m_);
-    if (system.law_count() > 0) laws_.emplace(system);
+    if (system.has_laws()) laws_.emplace(system);
     a1_.resize(n_);
     qs_.resize(n_);
     vs_.resize(n_);

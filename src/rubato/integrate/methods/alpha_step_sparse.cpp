@@ -80,7 +80,7 @@ class SparseAlphaStep final : public AlphaStep {
     }
     if (system.has_diagonal_mass()) mass_ = system.mass().diagonal();
     gather_products();
-    if (system.law_count() > 0) laws_.emplace(system);
+    if (system.has_laws()) laws_.emplace(system);
     right_.resize(n_);
     last_.resize(k_);
     push_.resize(k_);

@@ -28,7 +28,7 @@ class ExponentialStepper final : public Stepper {
         m_(system.contact_count()),
         sliders_(system.slider_count()),
         loads_(system.loads()) {
-    if (system.law_count() > 0) laws_.emplace(system);
+    if (system.has_laws()) laws_.emplace(system);
     y0_.resize(2 * n_);
     y1_.resize(2 * n_);
     input_.resize(2 * static_cast<Index>(loads_.count()));

@@ -1,5 +1,6 @@
 #include <rubato/core/error.hpp>
 #include <rubato/results/columns/beam_section_forces.hpp>
+#include <rubato/results/columns/block_columns.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/results/columns/kind_columns.hpp>
 #include <rubato/results/columns/law_columns.hpp>
@@ -25,6 +26,7 @@ OwnedColumns columns_of_equilibrium(const integrate::SystemKind& kind, const std
       made.groups.push_back(std::make_unique<SliderColumns>(system));
       made.groups.push_back(std::make_unique<StopColumns>(system));
       made.groups.push_back(std::make_unique<LawColumns>(system, false));
+      made.groups.push_back(std::make_unique<BlockColumns>(system, false));
     }
     void mechanism(const system::Mechanism& mechanism) override {
       const auto equations = std::make_shared<system::MechanismEquations>(mechanism);

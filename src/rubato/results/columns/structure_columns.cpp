@@ -1,3 +1,4 @@
+#include <rubato/results/columns/block_columns.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/results/columns/law_columns.hpp>
 #include <rubato/results/columns/structure_columns.hpp>
@@ -96,6 +97,7 @@ ColumnGroups columns_of_motion(const system::LocallyNonlinear& system, const std
   groups.push_back(std::make_unique<DescribedSliders>(system));
   groups.push_back(std::make_unique<StopColumns>(system));
   if (system.law_count() > 0) groups.push_back(std::make_unique<LawColumns>(system, true));
+  if (system.block_count() > 0) groups.push_back(std::make_unique<BlockColumns>(system, true));
   if (system.supports()) groups.push_back(std::make_unique<SupportColumns>(*system.supports()));
   return groups;
 }

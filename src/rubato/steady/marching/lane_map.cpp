@@ -240,7 +240,7 @@ std::unique_ptr<PeriodMap> make_lane_map(const integrate::Method& method, const 
   if (!std::holds_alternative<integrate::GeneralizedAlpha>(method.formula) &&
       !std::holds_alternative<integrate::Exponential>(method.formula))
     return nullptr;
-  if (system.stop_count() > 0 || system.law_count() > 0) return nullptr;
+  if (system.stop_count() > 0 || system.has_laws()) return nullptr;
   if (system.size() > largest_lane_model || system.slider_count() > largest_lane_model) return nullptr;
   return std::make_unique<LaneMap>(method, system, request);
 }

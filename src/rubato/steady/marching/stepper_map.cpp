@@ -231,7 +231,7 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
       record.law_work[j] += law.dissipated(system_.law_point(j, last_, model::Side::right), last_.memory.data() + place,
                                            system_.law_point(j, state, model::Side::left), state.memory.data() + place);
   }
-  if (system_.law_count() > 0) last_ = state;
+  if (system_.has_laws()) last_ = state;
   product_.noalias() = system_.damping() * state.v;
   loads_.evaluate(state.t, force_);
   if (adds_work) {
@@ -254,6 +254,7 @@ system::LocallyNonlinear with_excitation(const system::LocallyNonlinear& system,
     parts.sliders[i].limit = excitation.limits[static_cast<Index>(i)];
   parts.stops = system.stops();
   parts.laws = system.laws();
+  parts.blocks = system.blocks();
   parts.start = system.start();
   parts.coordinates = system.coordinates();
   std::vector<system::LoadTerm> terms;

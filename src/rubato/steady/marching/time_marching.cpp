@@ -50,7 +50,7 @@ bool TimeMarchingSolver::is_unbounded(const system::Excitation& excitation, Stea
   const bool is_loaded = has_static_load(excitation);
   for (Index k = 0; is_loaded && k < free_.cols(); ++k)
     if (drives(free_.col(k), excitation.constant.cast<Complex>())) return true;
-  if (system_.stop_count() > 0 || system_.law_count() > 0) return false;  // they may bound the motion
+  if (system_.stop_count() > 0 || system_.has_laws()) return false;  // they may bound the motion
   // A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite. One
   // that drifts may have been led to a speed beside which what a period adds is nothing.
   const bool repeats = is_repeating(found) && found != SteadyStatus::drifting;

@@ -53,7 +53,7 @@ void TimeMarchingSolver::find(Engine& engine, std::span<const system::Excitation
   // Between stops or springs that are not linear a motion that repeats may be unstable, and an extrapolation finds it
   // as readily as one that lasts.
   const bool extrapolates =
-      options_.extrapolates && start != SteadyStart::rest && system_.stop_count() == 0 && system_.law_count() == 0;
+      options_.extrapolates && start != SteadyStart::rest && system_.stop_count() == 0 && !system_.has_laws();
   const SteadyRequest& request = is_full ? request_ : amplitudes_;
   engine.records.resize(excitations.size());
   for (SteadyResponse& response : responses) response.iterations = 0;

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <rubato/results/columns/column_group.hpp>
+#include <rubato/system/locally_nonlinear.hpp>
+
+#include <string>
+#include <vector>
+
+namespace rubato::results {
+
+/// Columns of contacts, laws of several numbers: forces and slips along their plane (with _1 and _2 where there are two
+/// directions), the normal force, the gap and, in a motion, what they dissipated.
+class BlockColumns final : public ColumnGroup {
+ public:
+  /// @param in_motion  whether steps are booked
+  BlockColumns(const system::LocallyNonlinear& system, bool in_motion);
+
+  void add(TableLayout& layout) const override;
+  bool has_sums() const override { return in_motion_ && system_.block_count() > 0; }
+  void book(const system::State& before, const system::State& after) override;
+  void append(const system::State& state, std::vector<double>& row) override { append_since(state, state, row); }
+  void append_since(const system::State& before, const system::State& state, std::vector<double>& row) override;
+
+ private:
+  std::vector<std::string> names_of(const std::vector<Index>& blocks) const;
+  Index directions_of(Index block) const;
+
+  const system::LocallyNonlinear& system_;
+  bool in_motion_;
+  std::vector<Index> rubbing_[model::largest_block];  // by how many directions they rub in
+  std::vector<Index> all_;
+  Vector dissipated_;  // by each block in the steps that are booked [J]
+};
+
+}  // namespace rubato::results
