@@ -144,6 +144,7 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
       verdict_with("title", "titel"),
       "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
       "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "contact, "
       "force, "
       "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
@@ -167,6 +168,7 @@ TEST(KeyError, NamesAnUnknownTable) {
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
       "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "contact, "
       "force, "
       "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "

@@ -73,6 +73,10 @@ class ReadingVisitor {
   void by_name(const char* key, std::vector<std::pair<std::string, Quantity>>& to, const Key&) {
     to = reader_.optional_quantities_by_name(key).value_or(std::vector<std::pair<std::string, Quantity>>{});
   }
+  /// A table, or a list of one or two.
+  void one_or_two_by_name(const char* key, std::vector<std::vector<std::pair<std::string, Quantity>>>& to, const Key&) {
+    to = reader_.optional_lists_by_name(key, 2);
+  }
   /// @param complain  (reader, how many are given, where); throws
   void either_quantity(const std::array<const char*, 2>& keys, Quantity& to, bool& is_second, const Key&, const Key&,
                        const auto& complain) {

@@ -70,6 +70,11 @@ class SchemaVisitor {
     property(key, Json::object({{"type", Json::text("object")}, {"additionalProperties", reference("quantity")}}),
              about);
   }
+  void one_or_two_by_name(const char* key, const std::vector<std::vector<std::pair<std::string, Quantity>>>&,
+                          const Key& about) {
+    const Json table = Json::object({{"type", Json::text("object")}, {"additionalProperties", reference("quantity")}});
+    property(key, one_of({table, list(table, {1, 2})}), about);
+  }
   void either_quantity(const std::array<const char*, 2>& keys, const Quantity&, bool, const Key& first,
                        const Key& second, const auto&) {
     property(keys[0], reference("quantity"), first);

@@ -217,6 +217,27 @@ std::optional<std::vector<std::pair<std::string, model::Quantity>>> TomlReader::
   return quantities;
 }
 
+std::vector<std::vector<std::pair<std::string, model::Quantity>>> TomlReader::optional_lists_by_name(
+    const std::string& key, std::size_t most) {
+  const toml::node* found = node(key);
+  if (!found) return {};
+  const auto* list = found->as_array();
+  if (!list) return {*optional_quantities_by_name(key)};
+  if (list->empty() || list->size() > most)
+    throw InvalidInput(location(*found), fmt::format("{}: {} must be a table of numbers by name or a list of up to {}, "
+                                                     "got a list of {}",
+                                                     what_, key, most, list->size()));
+  std::vector<std::vector<std::pair<std::string, model::Quantity>>> all;
+  for (const toml::node& entry : *list) {
+    const auto* table = entry.as_table();
+    if (!table) refuse_type(entry, key, "a list of tables of numbers by name, such as [{ x = 1.0 }, { y = 1.0 }]");
+    auto& quantities = all.emplace_back();
+    for (const auto& [name, value] : *table)
+      quantities.emplace_back(std::string(name.str()), to_quantity(value, key + "." + std::string(name.str())));
+  }
+  return all;
+}
+
 std::optional<TomlReader> TomlReader::optional_table(const std::string& key, const std::string& what) {
   const toml::node* found = node(key);
   if (!found) return std::nullopt;

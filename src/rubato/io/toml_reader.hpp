@@ -51,6 +51,9 @@ class TomlReader {
   /// A table of quantities by name: { tip = 1.0 }.
   std::optional<std::vector<std::pair<std::string, model::Quantity>>> optional_quantities_by_name(
       const std::string& key);
+  /// One such table, or a list of them; empty where there is none.
+  std::vector<std::vector<std::pair<std::string, model::Quantity>>> optional_lists_by_name(const std::string& key,
+                                                                                           std::size_t most);
   std::optional<TomlReader> optional_table(const std::string& key, const std::string& what);
   /// [[key]] tables, in order; empty if there are none.
   std::vector<TomlReader> tables(const std::string& key);

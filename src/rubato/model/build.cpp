@@ -17,7 +17,7 @@ namespace {
 using numerics::Parameters;
 
 /// Looks names up and evaluates numbers, with messages that name the part.
-class Builder {
+class Builder final : public Places {
  public:
   Builder(const ModelDescription& description, const Parameters& parameters, NegativeLoad negative_load)
       : description_(description), parameters_(parameters), negative_load_(negative_load) {}
@@ -35,6 +35,7 @@ class Builder {
     take_stops();
     take_laws();
     take_pressed_sliders();
+    take_contacts();
     for (const ForceDescription& force : description_.forces) {
       if (force.follows)
         throw InvalidInput(force.follows_where, fmt::format("the force on \"{}\" follows its node, which takes a "
@@ -55,6 +56,10 @@ class Builder {
     if (description_.gravity) take_gravity(*description_.gravity);
     if (description_.base_motion) take_base_motion(*description_.base_motion);
     return std::move(model_);
+  }
+
+  Index end_of(const std::string& name, const Location& where, const std::string& role) const override {
+    return name == "ground" || fixed_.count(name) > 0 ? ground : find(name, where, role);
   }
 
  private:
@@ -223,9 +228,7 @@ class Builder {
 
   void join(const Between& names, const std::array<Location, 2>& where, const std::string& part, Index& first,
             Index& second) const {
-    const auto end = [&](std::size_t i) {
-      return names[i] == "ground" || fixed_.count(names[i]) > 0 ? ground : find(names[i], where[i], part + " joins");
-    };
+    const auto end = [&](std::size_t i) { return end_of(names[i], where[i], part + " joins"); };
     first = end(0);
     second = end(1);
     if (first == second && names[0] == names[1])
@@ -302,6 +305,25 @@ class Builder {
                                       fmt::format("slider \"{}\"", law.name));
     }
     model_.laws.insert(model_.laws.end(), pressed_.begin(), pressed_.end());
+  }
+
+  void take_contacts() {
+    for (const ContactDescription& description : description_.contacts) {
+      const std::string& name = description.name;
+      if (name.empty()) throw InvalidInput(description.where, "a contact needs a name");
+      refuse_unfit_name(name, description.where);
+      const auto is_called_so = [&](const auto& other) { return other.name == name; };
+      const auto is_one_of = [&](const auto& parts) { return std::any_of(parts.begin(), parts.end(), is_called_so); };
+      if (is_one_of(model_.blocks))
+        throw InvalidInput(description.where, fmt::format("two contacts are called \"{}\"", name));
+      if (is_slider(name) || is_one_of(model_.stops) || is_one_of(model_.laws) || places_.count(name) > 0)
+        throw InvalidInput(
+            description.where,
+            fmt::format("contact \"{}\" has the name of a slider, a stop, a law or a coordinate; results "
+                        "would mix them up",
+                        name));
+      model_.blocks.push_back(build_contact(description, model_, *this, parameters_));
+    }
   }
 
   bool is_slider(const std::string& name) const {

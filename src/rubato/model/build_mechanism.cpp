@@ -27,6 +27,8 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (!d.stops.empty())
     refuse(d.stops.front().where, "a [[stop]]",
            "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }");
+  if (!d.contacts.empty())
+    refuse(d.contacts.front().where, "a [[contact]]", "give a joint friction, or a joint of type \"strut\" a lock");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (!std::holds_alternative<std::monostate>(d.damping))
     refuse(where_of(d.damping), "[damping]",

@@ -34,6 +34,19 @@ std::string contact_at(const Model& model, Index coordinate);
 NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
                                const Model& model, const numerics::Parameters& parameters, const std::string& part);
 
+/// What knows the coordinates of a model by their names.
+class Places {
+ public:
+  virtual ~Places() = default;
+  /// Ground of what a support holds. Throws InvalidInput for a name that is no coordinate.
+  /// @param role  "slider \"contact1\" joins"
+  virtual Index end_of(const std::string& name, const Location& where, const std::string& role) const = 0;
+};
+
+/// A contact as a law of several numbers. Throws InvalidInput.
+BlockBetween build_contact(const ContactDescription& description, const Model& model, const Places& places,
+                           const numerics::Parameters& parameters);
+
 /// @param n  coordinates of the model
 Damping build_damping(const DampingDescription& description, Index n, const numerics::Parameters& parameters);
 /// Where damping is described; of no damping, nowhere.

@@ -92,6 +92,27 @@ struct StopDescription {
   Location where;
 };
 
+/// Friction along a plane, under a spring across it that only pushes.
+struct ContactDescription {
+  using Shares = std::vector<std::pair<std::string, Quantity>>;  ///< coordinates and their weights
+
+  std::string name;
+  Between between;  ///< two nodes, or one and the ground; empty: the shares count
+  std::array<Location, 2> between_where;
+  std::vector<Quantity> normal_direction;      ///< from the second end to the first, of any length
+  std::vector<Quantity> tangential_direction;  ///< in space: the first of two; empty: the axis least along the normal
+  Location normal_direction_where, tangential_direction_where;
+  std::vector<Shares> tangential;  ///< one or two displacements along the plane
+  Shares normal;                   ///< that across it, positive where the ends come nearer
+  Location tangential_where, normal_where;
+  std::optional<Quantity> tangential_stiffness;  ///< kT [N/m]
+  Quantity normal_stiffness;                     ///< kn [N/m]
+  std::optional<Quantity> friction_coefficient;  ///< mu [-]; none: nothing rubs
+  std::optional<Quantity> gap;                   ///< [m]
+  std::optional<Quantity> normal_load;           ///< N at d = 0 [N], instead of the gap
+  Location where;
+};
+
 struct ForceDescription {
   std::string on;          ///< a coordinate
   TimeLawDescription law;  ///< [N]
@@ -173,6 +194,7 @@ struct ModelDescription {
   std::vector<SliderDescription> sliders;
   std::vector<StopDescription> stops;
   std::vector<LawDescription> laws;
+  std::vector<ContactDescription> contacts;
   std::vector<ForceDescription> forces;
   std::vector<DistributedForceDescription> distributed_forces;
   std::vector<HeldDescription> held_forces, displacements;

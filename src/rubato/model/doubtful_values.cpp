@@ -35,6 +35,10 @@ std::vector<DoubtfulValue> doubtful_values(const ModelDescription& description,
   for (const auto& slider : description.sliders)
     take_friction(slider.friction_coefficient, fmt::format("slider \"{}\": friction_coefficient", slider.name),
                   parameters, all);
+  for (const ContactDescription& contact : description.contacts)
+    if (contact.friction_coefficient)
+      take_friction(*contact.friction_coefficient, fmt::format("contact \"{}\": friction_coefficient", contact.name),
+                    parameters, all);
   for (const LawDescription& law : description.laws) {
     const LawKind& kind = law_kind(law.kind);
     if (const std::string why = kind.doubt ? kind.doubt(law, parameters) : ""; !why.empty())

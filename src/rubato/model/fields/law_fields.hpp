@@ -87,6 +87,56 @@ void fields(auto& visit, Like<LawDescription> auto& law) {
   }
 }
 
+void fields(auto& visit, Like<ContactDescription> auto& contact) {
+  visit.numbered_name("contact", contact.name, contact.where, {.says = "heads its columns in the results"});
+  visit.between("between", contact.between, contact.between_where,
+                {.says = "two nodes, or a node and the ground; with a normal_direction"});
+  visit.quantities("normal_direction", contact.normal_direction, {2, 3},
+                   {.says = "from the second of the two to the first, across the plane of contact"});
+  visit.where_given(contact.normal_direction_where, "normal_direction");
+  visit.quantities("tangential_direction", contact.tangential_direction, {3, 3},
+                   {.says = "in space, the first of two along the plane", .unless = "the axis least along the normal"});
+  visit.where_given(contact.tangential_direction_where, "tangential_direction");
+  visit.one_or_two_by_name(
+      "tangential", contact.tangential,
+      {.says = "instead of between: u along the plane as coordinates times weights, { x1 = 1.0 }, or a list of two"});
+  visit.where_given(contact.tangential_where, "tangential");
+  visit.by_name("normal", contact.normal,
+                {.says = "with tangential: d, positive where the two come nearer, as coordinates times weights"});
+  visit.where_given(contact.normal_where, "normal");
+  visit.quantity("tangential_stiffness", contact.tangential_stiffness,
+                 {.unit = "N/m", .says = "kT; of a contact that rubs", .range = Range::positive});
+  visit.quantity("normal_stiffness", contact.normal_stiffness,
+                 {.required = true, .unit = "N/m", .says = "kn", .range = Range::positive});
+  visit.quantity("friction_coefficient", contact.friction_coefficient,
+                 {.unit = "-", .says = "mu: |T| <= mu N", .unless = "nothing rubs", .range = Range::not_negative});
+  visit.quantity("gap", contact.gap,
+                 {.unit = "m", .says = "N = max(0, kn (d - gap)); negative: pressed at d = 0", .unless = "0"});
+  visit.quantity(
+      "normal_load", contact.normal_load,
+      {.unit = "N", .says = "instead of the gap: N = max(0, normal_load + kn d)", .range = Range::not_negative});
+  visit.exactly_one_of({"between", "normal"});
+  visit.excludes("gap", "normal_load");
+  visit.requires_beside("between", "normal_direction");
+  visit.requires_beside("normal_direction", "between");
+  visit.requires_beside("tangential_direction", "between");
+  visit.requires_beside("tangential", "normal");
+  visit.requires_beside("tangential_stiffness", "friction_coefficient");
+  visit.requires_beside("friction_coefficient", "tangential_stiffness");
+  visit.check([&](auto& reader) {
+    const bool is_of_nodes = !contact.between[0].empty();
+    if (is_of_nodes) reader.refuse_beside("between", {"tangential", "normal"});
+    if (!contact.normal.empty()) reader.refuse_beside("normal", {"normal_direction", "tangential_direction"});
+    if (!is_of_nodes && contact.normal.empty()) reader.refuse_to_lack("between");
+    if (is_of_nodes && contact.normal_direction.empty()) reader.refuse_to_lack("normal_direction");
+    if (contact.gap && contact.normal_load) reader.refuse_beside("gap", {"normal_load"});
+    if (contact.tangential_stiffness && !contact.friction_coefficient) reader.refuse_to_lack("friction_coefficient");
+    if (contact.friction_coefficient && !contact.tangential_stiffness) reader.refuse_to_lack("tangential_stiffness");
+    if (!is_of_nodes && contact.friction_coefficient && contact.tangential.empty()) reader.refuse_to_lack("tangential");
+    if (!contact.friction_coefficient && !contact.tangential.empty()) reader.refuse_to_lack("friction_coefficient");
+  });
+}
+
 void fields(auto& visit, Like<ModalDamping> auto& damping) {
   visit.where(damping.where, "modal_ratio");
   visit.one_or_more(

@@ -19,6 +19,8 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.tables("stop", model.stops, "one-sided stops: force max(0, k (u - gap) + c du/dt) while u > gap");
   for (const LawKind& kind : law_kinds())
     visit.tables_like(kind.table, model.laws, law_description(kind), kind.meaning);
+  visit.tables("contact", model.contacts,
+               "friction along a plane, |T| <= mu N, under a spring across it that only pushes, N >= 0");
   visit.held_or_moving("force", "held", model.held_forces, Held::force, model.forces,
                        "a load on a coordinate: harmonic, a formula of t, or a table; or held in static states");
   visit.tables("distributed_force", model.distributed_forces, "an even force per length along a beam or truss");

@@ -30,6 +30,10 @@ class QuantityVisitor {
   void by_name(const char*, const std::vector<std::pair<std::string, Quantity>>& list, const Key& key) const {
     for (const auto& [name, quantity] : list) take_(quantity, key.role, false);
   }
+  void one_or_two_by_name(const char* key, const std::vector<std::vector<std::pair<std::string, Quantity>>>& tables,
+                          const Key& about) const {
+    for (const auto& table : tables) by_name(key, table, about);
+  }
   void either_quantity(const std::array<const char*, 2>&, const Quantity& quantity, bool, const Key& key, const Key&,
                        const auto&) const {
     take_(quantity, key.role, false);
