@@ -56,8 +56,8 @@ system::LocallyNonlinear coupled(double w, bool by_contact) {
 }
 
 /// Two blades and a wedge damper: x1, x2, xd, yd; contact planes inclined by 35 degrees, pressed by a load of 6.
-system::LocallyNonlinear wedge(double friction, double amplitude = 0.0) {
-  const double b = 35.0 * std::numbers::pi / 180.0, c = std::cos(b), s = std::sin(b), w = 7.6;
+system::LocallyNonlinear wedge(double friction, double amplitude = 0.0, double w = 7.6) {
+  const double b = 35.0 * std::numbers::pi / 180.0, c = std::cos(b), s = std::sin(b);
   auto parts =
       masses(Eigen::Vector4d(1, 1, 0.05, 0.05), Eigen::Vector4d(0.08, 0.08, 0.05, 0.05), Eigen::Vector4d(60, 66, 0, 0));
   std::vector<system::LoadTerm> loads{testing::harmonic(3, 6.0, 0.0)};
@@ -75,8 +75,8 @@ system::LocallyNonlinear wedge(double friction, double amplitude = 0.0) {
 /// x'' + .04 x' + x + Tx = .8 cos(w t), y'' + .05 y' + 1.3 y + Ty = .5 cos(w t - pi/2),
 /// z'' + .06 z' + z + N = 1.5 + .6 cos(w t + pi/3), kT = 1, kn = 2, mu = .4.
 /// @param turn  the two directions of the contact, against x and y
-system::LocallyNonlinear in_space(double turn = 0.0) {
-  const double w = 1.6, c = std::cos(turn), s = std::sin(turn);
+system::LocallyNonlinear in_space(double turn = 0.0, double w = 1.6) {
+  const double c = std::cos(turn), s = std::sin(turn);
   auto parts = masses(Vector::Ones(3), Eigen::Vector3d(0.04, 0.05, 0.06), Eigen::Vector3d(1.0, 1.3, 1.0));
   parts.loads = system::Loads({testing::harmonic(0, 0.8, w), testing::harmonic(1, 0.5, w, -0.5 * std::numbers::pi),
                                testing::harmonic(2, 1.5, 0.0), testing::harmonic(2, 0.6, w, std::numbers::pi / 3.0)});
@@ -255,6 +255,46 @@ TEST(Contacts, DoNotKnowHowTheirDirectionsAreTurned) {
     EXPECT_LT((ends[i].v - ends[0].v).norm(), 1e-10);
     EXPECT_NEAR(works[i], works[0], 1e-10);
   }
+}
+
+/// Half peak-to-peak of the coordinates and the work of the contacts in the last of some periods.
+std::vector<double> settled(const system::LocallyNonlinear& system, double angular_frequency, int periods) {
+  const double period = 2.0 * std::numbers::pi / angular_frequency;
+  const auto stepper = make_stepper(make_method("average_acceleration"), system);
+  system::State state = consistent_start(system, system.start());
+  EXPECT_EQ(march(*stepper, state, period / 1000, (periods - 1) * period, nullptr, nullptr).end, MarchEnd::reached);
+  struct Extent final : Observer {
+    explicit Extent(const system::LocallyNonlinear& of) : works(of) {}
+    bool accepted(const system::State& before, const system::State& after) override {
+      low = low.size() > 0 ? low.cwiseMin(after.q) : after.q;
+      high = high.size() > 0 ? high.cwiseMax(after.q) : after.q;
+      return works.accepted(before, after);
+    }
+    Works works;
+    Vector low, high;
+  } extent(system);
+  EXPECT_EQ(march(*stepper, state, period / 1000, periods * period, &extent, nullptr).end, MarchEnd::reached);
+  std::vector<double> found;
+  for (Index i = 0; i < system.size(); ++i) found.push_back(0.5 * (extent.high[i] - extent.low[i]));
+  found.insert(found.end(), extent.works.work.begin(), extent.works.work.end());
+  return found;
+}
+
+TEST(Contacts, SettleOnTheOrbitsOfTheReference) {
+  const std::vector<std::pair<double, std::vector<double>>> of_space{
+      {1.2, {1.624344006, 2.040535643, 0.3842063884, 4.136846906}},
+      {1.6, {0.7690779349, 0.5330234895, 1.620972012, 0.8962136567}},
+      {2.0, {0.3665304549, 0.274221635, 0.566395461, 0.1769050225}}};
+  for (const auto& [w, expected] : of_space) {
+    const std::vector<double> found = settled(in_space(0.0, w), w, 70);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(found[i], expected[i], 1e-3 * expected[i] + 2e-4) << w;
+  }
+  const double w = 8.8;
+  const std::vector<double> of_wedge{0.05450094966,  0.30130107102, 0.20740340101,
+                                     0.079601839583, 0.6773071866,  0.38724995594};
+  const std::vector<double> found = settled(wedge(0.35, 3.0, w), w, 120);
+  for (std::size_t i = 0; i < of_wedge.size(); ++i) EXPECT_NEAR(found[i], of_wedge[i], 1e-3 * of_wedge[i]) << i;
 }
 
 // Both contacts slip under the load that grows from zero; without friction they press by a quarter more.

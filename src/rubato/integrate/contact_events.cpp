@@ -74,7 +74,7 @@ bool ContactEvents::accepted(const system::State& before, const system::State& a
   note_gaps(after);
   for (Watched& one : watched_) {
     if (one.contact >= system_.first_law()) {
-      const int now = located_
+      const int now = located_ && one.contact < system_.first_block()
                           ? static_cast<int>(located_->contact_of_law(one.contact - system_.first_law(), before, after))
                           : branch_of_law(one.contact, after);
       if (now != one.branch) note_law(one, now, after.t);
