@@ -41,7 +41,8 @@ def value(schema):
         return " or ".join(map(value, schema["oneOf"]))
     if schema["type"] == "array":
         items = schema["items"]
-        return "list of " + value(items) if "enum" in items else entries(schema, value(items).split()[-1])
+        one = value(items)
+        return "list of " + one if "enum" in items else entries(schema, "table" if "table" in one else one.split()[-1])
     if schema["type"] == "object":
         inner = schema.get("additionalProperties")
         return "table by name" if isinstance(inner, dict) else "table"
@@ -64,7 +65,7 @@ def rows(schema, known, prefix=""):
         meaning = re.sub(r"\[?\[\[?\w+\]\]|\[matrices\]", r"`\g<0>`", meaning)
         if key in schema.get("required", []):
             default = "needed"
-        yield f"| `{prefix}{key}` | {value(inner)} | {default} | {meaning} |".replace("|  |", "| |")
+        yield f"| `{prefix}{key}` | {value(inner)} | {default} | {meaning.replace('|', chr(92) + '|')} |".replace("|  |", "| |")
         if inner.get("type") == "object" and "properties" in inner:
             yield from rows(inner, {}, f"{prefix}{key}.")
 

@@ -9,6 +9,7 @@
 namespace rubato {
 namespace {
 
+using rubato::testing::edited;
 using rubato::testing::study_text;
 using rubato::testing::verdict;
 using ::testing::HasSubstr;
@@ -52,7 +53,8 @@ TEST(ReadContact, RefusesKeysThatDoNotGoTogether) {
 
 TEST(ReadContact, IsRefusedByAnalysesThatDoNotKnowIt) {
   const auto with = [](const std::string& analysis) {
-    std::string study = study_text;
+    std::string study = edited("N0 = 10.0", "N0 = 10.0\nOmega = 7.0",
+                               edited("angular_frequency = 7.0", "angular_frequency = \"Omega\""));
     study.replace(study.find("type = \"transient\""), std::string::npos, analysis);
     return verdict_on(shares + rubs + presses, study);
   };
