@@ -33,13 +33,18 @@ void ResidueWatch::note(double t, std::span<const double> energies) {
   const bool is_first = start_.empty();
   if (is_first) start_.assign(energies.begin(), energies.end());
   constexpr double of_sums = 1e-10;
+  double residue = energies.back();
   for (std::size_t i = 0; i < accounts_.size(); ++i) {
     // The zero of what is stored lies anywhere, but that of kinetic energy.
     const double zero = accounts_[i].name == "kinetic" ? 0.0 : start_[i];
-    largest_ = std::fmax(largest_, std::abs(energies[i] - zero));
     round_off_ = std::fmax(round_off_, of_sums * std::abs(energies[i]));
+    if (accounts_[i].name == "stop_dissipated" && energies[i] < 0.0) {  // which no stop does: steps passed over it
+      residue -= energies[i];
+      continue;
+    }
+    largest_ = std::fmax(largest_, std::abs(energies[i] - zero));
+    if (accounts_[i].kind != integrate::Account::Kind::stored) flow_ = std::fmax(flow_, std::abs(energies[i]));
   }
-  const double residue = energies.back();
   if (!(std::abs(residue) <= std::abs(residue_))) {
     residue_ = residue;
     at_ = t;

@@ -39,10 +39,11 @@ integrate::AdaptiveReport march_and_record(const std::string& name, const Transi
 }
 
 /// Of a residue beyond ten tolerances, or of equal steps beyond a thousandth of the largest energy. Works are summed by
-/// trapezoids, so that the residue of a method of higher order is theirs.
+/// trapezoids, so that the residue of a method of higher order is theirs, where there are any.
 std::string warning_of_residue(const TransientRecorder& recorder, const TransientPlan& plan, double round_off,
                                const integrate::Events& events) {
-  if (!recorder.residue() || integrate::find_method(plan.march.method.name).order > 2) return "";
+  const bool sums_well = integrate::find_method(plan.march.method.name).order <= 2;
+  if (!recorder.residue() || !(sums_well || recorder.residue()->is_closed())) return "";
   if (plan.march.automatic && plan.march.step == 0.0)
     return recorder.residue()->warning(
         10.0 * plan.march.automatic->tolerance, round_off, events,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <utility>
 
 namespace rubato::analysis {
@@ -36,7 +37,13 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
 }
 
 void TransientRecorder::book(const system::State& before, const system::State& after) {
-  if (ledger_) ledger_->add_step(before, after);
+  if (ledger_) {
+    ledger_->add_step(before, after);
+    // The largest energy may lie between two rows.
+    ++booked_;
+    if (booked_ % 64 == 0 || std::has_single_bit(static_cast<unsigned long>(booked_)))
+      residue_->note(after.t, ledger_->at(after, after));
+  }
   for (results::ColumnGroup* group : summing_) group->book(before, after);
 }
 

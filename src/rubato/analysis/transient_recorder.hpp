@@ -43,7 +43,7 @@ class TransientRecorder {
   system::State shown_;
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_;
-  long count_ = 0;
+  long count_ = 0, booked_ = 0;
 };
 
 }  // namespace rubato::analysis
