@@ -284,6 +284,11 @@ class Builder final : public Places {
       if (!(slider.stiffness > 0.0))
         throw InvalidInput(description.stiffness.where,
                            fmt::format("{}: stiffness must be positive, got {}", part, slider.stiffness));
+      if (description.normal_law.empty() && description.normal_law_where.line > 0)
+        throw InvalidInput(description.normal_law_where,
+                           fmt::format("{}: normal_load names no law; give the name of a stop or of another law, or a "
+                                       "number",
+                                       part));
       const double mu = at_least_zero(description.friction_coefficient, part + ": friction_coefficient");
       if (description.is_law()) {
         pressed_.push_back(
