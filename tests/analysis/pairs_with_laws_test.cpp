@@ -62,5 +62,18 @@ TEST(PairsWithLaws, RefuseWhatTheirEstimateDoesNotSee) {
             std::string::npos);
 }
 
+// Where the load reaches zero it has a kink, too: a step that ends at one ends at the other.
+TEST(PairsWithLaws, GoOnFromWhereALoadEnds) {
+  for (const std::string load : {"max(0, 2 - t)", "min(1, abs(2 - t))", "max(0, cos(0.6*t + 1.067) - 0.239)"})
+    for (const std::string method : {"dormand_prince", "bogacki_shampine", "generalized_alpha"}) {
+      SCOPED_TRACE(load + method);
+      const std::string slider =
+          "slider = [{ name = \"s\", between = [\"m\", \"ground\"], stiffness = 0.5, friction_coefficient = 0.3, "
+          "normal_load = \"" +
+          load + "\" }]\n";
+      (void)testing::run_study(study(slider, method, "{ tolerance = 1e-4, events = \"locate\" }"));
+    }
+}
+
 }  // namespace
 }  // namespace rubato::analysis

@@ -270,7 +270,8 @@ class Marcher {
     }
     // What would be left of the way to a breakpoint is nothing: no step can be made of it.
     const double next = breakpoints_[next_breakpoint_];
-    if (length.t1 == next || next - length.t1 > resolution) return true;
+    length.arrives = length.t1 == next;
+    if (length.arrives || next - length.t1 > resolution) return true;
     length = {next - base_->t, next, 0.0, true};
     return has_tried(length);
   }

@@ -74,9 +74,15 @@ bool ContactEvents::accepted(const system::State& before, const system::State& a
   note_gaps(after);
   for (Watched& one : watched_) {
     if (one.contact >= system_.first_law()) {
-      const int now = located_ && one.contact < system_.first_block()
-                          ? static_cast<int>(located_->contact_of_law(one.contact - system_.first_law(), before, after))
-                          : branch_of_law(one.contact, after);
+      const Index law = one.contact - system_.first_law();
+      const bool is_located = located_ && one.contact < system_.first_block();
+      const auto branch_at = [&](bool at_end) {
+        return static_cast<int>(located_->contact_of_law(law, before, after, at_end));
+      };
+      // A load that jumps, or rises from zero, changes it where a step begins.
+      const int then = is_located ? branch_at(false) : one.branch;
+      if (then != one.branch) note_law(one, then, before.t);
+      const int now = is_located ? branch_at(true) : branch_of_law(one.contact, after);
       if (now != one.branch) note_law(one, now, after.t);
       continue;
     }

@@ -1,24 +1,45 @@
 #include <rubato/integrate/pressed_motion.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace rubato::integrate {
 
 model::LawPoint PressedMotion::at(Index law, const system::State& from, const system::State& to, double share) {
-  return going_on(law, from, to, share, 0.0);
+  const Place there = place(system_.first_law() + law, from, to, share);
+  const Pressing pressed = pressing(law, from, to, share, side_at(share));
+  return point_of(there, pressed, from.t + share * (to.t - from.t), side_at(share));
 }
 
 model::LawPoint PressedMotion::going_on(Index law, const system::State& from, const system::State& to, double share,
                                         double moment) {
-  const Place there = place(system_.first_law() + law, from, to, share);
-  const Pressing pressed = pressing(law, from, to, share);
+  const double h = to.t - from.t;
+  Place there = place(system_.first_law() + law, from, to, share);
+  Pressing pressed = pressing(law, from, to, share, model::Side::right);
+  there.rate += moment * there.acceleration;
+  const model::NormalForce& normal = system_.laws()[static_cast<std::size_t>(law)].normal;
+  constexpr double little = 0.01;  // of the step: a force that begins later in it says nothing here
+  const bool is_late = share > 0.5;
+  if (normal.depends_on_motion()) {
+    const double beside = is_late ? share - little : share + little;
+    const double change =
+        pressing(law, from, to, beside, is_late ? model::Side::left : model::Side::right).rate - pressed.rate;
+    pressed.rate += moment * (is_late ? -change : change) / (little * h);
+  } else {
+    pressed.rate += moment * pressed.second_rate;
+  }
+  return point_of(there, pressed, from.t + share * h, model::Side::right);
+}
+
+model::LawPoint PressedMotion::point_of(const Place& place, const Pressing& pressing, double t, model::Side side) {
   model::LawPoint point;
-  point.u = there.u;
-  point.rate = there.rate + moment * there.acceleration;
-  point.t = from.t + share * (to.t - from.t);
-  point.side = share > 0.0 ? model::Side::left : model::Side::right;
-  point.normal = pressed.value;
-  point.normal_rate = pressed.rate + moment * pressed.second_rate;
+  point.u = place.u;
+  point.rate = place.rate;
+  point.t = t;
+  point.side = side;
+  point.normal = pressing.value;
+  point.normal_rate = pressing.rate;
   return point;
 }
 
@@ -26,29 +47,32 @@ PressedMotion::Place PressedMotion::place(Index contact, const system::State& fr
                                           double share) const {
   const double h = to.t - from.t, s = share, r = 1.0 - s;
   const double u0 = system_.relative_displacement(contact, from.q), v0 = system_.relative_displacement(contact, from.v);
-  const double a0 = system_.relative_displacement(contact, from.auxiliary_acceleration);
-  if (s == 0.0) return {u0, v0, a0};
   const double u1 = system_.relative_displacement(contact, to.q), v1 = system_.relative_displacement(contact, to.v);
-  // Of displacements a short step would leave nothing but round-off: the velocity is the parabola that begins with a0.
-  const double acceleration = r * a0 + s * (2.0 * (v1 - v0) / h - a0);
+  double first = (6.0 * (u1 - u0) / h - 4.0 * v0 - 2.0 * v1) / h;
+  double last = (6.0 * (u0 - u1) / h + 2.0 * v0 + 4.0 * v1) / h;
+  // Of the displacements of a short step nothing but round-off is left.
+  constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon(), little = 1e-2;
+  const double mean = (v1 - v0) / h;
+  if (!(round_off * (std::abs(u0) + std::abs(u1)) < little * h * h * std::max(std::abs(first), std::abs(last))))
+    first = last = mean;
   return {r * r * (1.0 + 2.0 * s) * u0 + s * s * (3.0 - 2.0 * s) * u1 + h * s * r * (r * v0 - s * v1),
-          6.0 * s * r * (u1 - u0) / h + r * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1, acceleration};
+          6.0 * s * r * (u1 - u0) / h + r * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1, r * first + s * last};
 }
 
 PressedMotion::Pressing PressedMotion::pressing(Index law, const system::State& from, const system::State& to,
-                                                double share) {
+                                                double share, model::Side side) {
   const model::LawBetween& pressed = system_.laws()[static_cast<std::size_t>(law)];
   const model::NormalForce& normal = pressed.normal;
   if (!pressed.law->takes_normal()) return {0.0, 0.0, 0.0};
   if (normal.stop >= 0) return of_stop(normal.stop, place(system_.slider_count() + normal.stop, from, to, share));
-  if (normal.law >= 0) return of_law(normal.law, from, to, share);
-  return of_formula(normal, from.t + share * (to.t - from.t), share == 0.0);
+  if (normal.law >= 0) return of_law(normal.law, from, to, share, side);
+  return of_formula(normal, from.t + share * (to.t - from.t), side);
 }
 
-PressedMotion::Pressing PressedMotion::of_formula(const model::NormalForce& normal, double t, bool is_start) const {
+PressedMotion::Pressing PressedMotion::of_formula(const model::NormalForce& normal, double t, model::Side side) const {
   if (!normal.formula) return {normal.value, 0.0, 0.0};
   const numerics::TimeDerivatives d =
-      is_start ? normal.formula->derivatives_from_right(t) : normal.formula->derivatives_from_left(t);
+      side == model::Side::right ? normal.formula->derivatives_from_right(t) : normal.formula->derivatives_from_left(t);
   return {d.value, d.rate, d.second_rate};
 }
 
@@ -56,23 +80,32 @@ PressedMotion::Pressing PressedMotion::of_formula(const model::NormalForce& norm
 PressedMotion::Pressing PressedMotion::of_stop(Index j, const Place& place) const {
   const model::Stop& stop = system_.stops()[static_cast<std::size_t>(j)];
   const double spring = stop.stiffness * (place.u - stop.gap), force = spring + stop.damping * place.rate;
-  if (spring > 0.0 && force > 0.0)
-    return {force, stop.stiffness * place.rate + stop.damping * place.acceleration,
-            stop.stiffness * place.acceleration};
-  return {std::min(0.0, spring), stop.stiffness * place.rate, stop.stiffness * place.acceleration};
+  if (spring > 0.0 && force > 0.0) return {force, stop.stiffness * place.rate + stop.damping * place.acceleration, 0.0};
+  return {std::min(0.0, spring), stop.stiffness * place.rate, 0.0};
 }
 
 PressedMotion::Pressing PressedMotion::of_law(Index law, const system::State& from, const system::State& to,
-                                              double share) {
+                                              double share, model::Side side) {
   const model::Law& pressing = *system_.laws()[static_cast<std::size_t>(law)].law;
   const Index memory = system_.memory_of(law);
-  const model::LawPoint there = at(law, from, to, share);
-  const model::LawAnswer answer = share == 0.0 ? pressing.at(there, from.memory.data() + memory)
-                                               : pressing.advance(at(law, from, to, 0.0), from.memory.data() + memory,
-                                                                  there, next_.data() + memory);
+  model::LawPoint start = at(law, from, to, 0.0), there = at(law, from, to, share);
+  there.side = side;
+  const auto answer_at = [&](const model::LawPoint& point) {
+    return share == 0.0 ? pressing.at(point, from.memory.data() + memory)
+                        : pressing.advance(start, from.memory.data() + memory, point, next_.data() + memory);
+  };
+  const model::LawAnswer answer = answer_at(there);
   const double acceleration = place(system_.first_law() + law, from, to, share).acceleration;
-  return {answer.force, answer.by_u * there.rate + answer.by_rate * acceleration + answer.by_normal * there.normal_rate,
-          answer.by_u * acceleration};
+  double rate = answer.by_u * there.rate + answer.by_rate * acceleration + answer.by_normal * there.normal_rate;
+  if (pressing.depends_on_time()) {
+    // On the side that counts: beyond it the law may go by another formula.
+    const double moment = std::max(1e-3 * (to.t - from.t), 1e-8 * std::abs(there.t));
+    model::LawPoint beside = there;
+    const double sign = side == model::Side::right ? 1.0 : -1.0;
+    beside.t += sign * moment;
+    rate += sign * (answer_at(beside).force - answer.force) / moment;
+  }
+  return {answer.force, rate, 0.0};
 }
 
 }  // namespace rubato::integrate

@@ -15,7 +15,8 @@ class PressedMotion {
 
   /// At a share of the step; 0 is its start.
   model::LawPoint at(Index law, const system::State& from, const system::State& to, double share);
-  /// The same place, with the rates that `moment` later [s] are reached there: of what rests they say how it goes on.
+  /// The same place as it goes on from there, with the rates that are reached a moment later [s]: of what rests they
+  /// say how it goes on.
   model::LawPoint going_on(Index law, const system::State& from, const system::State& to, double share, double moment);
 
  private:
@@ -26,10 +27,12 @@ class PressedMotion {
     double value, rate, second_rate;
   };
   Place place(Index contact, const system::State& from, const system::State& to, double share) const;
-  Pressing pressing(Index law, const system::State& from, const system::State& to, double share);
-  Pressing of_formula(const model::NormalForce& normal, double t, bool is_start) const;
+  static model::Side side_at(double share) { return share > 0.0 ? model::Side::left : model::Side::right; }
+  static model::LawPoint point_of(const Place& place, const Pressing& pressing, double t, model::Side side);
+  Pressing pressing(Index law, const system::State& from, const system::State& to, double share, model::Side side);
+  Pressing of_formula(const model::NormalForce& normal, double t, model::Side side) const;
   Pressing of_stop(Index stop, const Place& place) const;
-  Pressing of_law(Index law, const system::State& from, const system::State& to, double share);
+  Pressing of_law(Index law, const system::State& from, const system::State& to, double share, model::Side side);
 
   const system::LocallyNonlinear& system_;
   Vector next_;  // memory of laws at the place

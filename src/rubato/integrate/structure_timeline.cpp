@@ -236,13 +236,14 @@ double StructureTimeline::guard_of_law(Index contact, const system::State& from,
 }
 
 model::Law::Contact StructureTimeline::contact_of_law(Index law, const system::State& before,
-                                                      const system::State& after) {
+                                                      const system::State& after, bool at_end) {
   const model::Law& watched = *system_.laws()[static_cast<std::size_t>(law)].law;
-  const double* const memory = after.memory.data() + system_.memory_of(law);
+  const system::State& state = at_end ? after : before;
+  const double* const memory = state.memory.data() + system_.memory_of(law);
   if (!watches_sliders_ || !watched.takes_normal())
-    return watched.contact(system_.law_point(law, after, model::Side::left), memory, 0.0);
+    return watched.contact(system_.law_point(law, state, model::Side::left), memory, 0.0);
   const double near = 2.0 * resolution_;
-  return watched.contact(pressed_.going_on(law, before, after, 1.0, near), memory, near);
+  return watched.contact(pressed_.going_on(law, before, after, at_end ? 1.0 : 0.0, near), memory, near);
 }
 
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {

@@ -36,8 +36,8 @@ class StructureTimeline final : public Timeline {
   /// The same at the end of a step, which may have ended at a transition: forces and velocities there are zero but for
   /// what locating leaves, of either sign.
   int branch_after(Index contact, const system::State& before, const system::State& after);
-  /// How a law that sticks goes on at the end of such a step.
-  model::Law::Contact contact_of_law(Index law, const system::State& before, const system::State& after);
+  /// How a law that sticks goes on at the end of such a step, or went on at its start.
+  model::Law::Contact contact_of_law(Index law, const system::State& before, const system::State& after, bool at_end);
 
  private:
   enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again, law };

@@ -16,7 +16,7 @@ class Jenkins final : public Law, public LawSlopes {
 
   LawAnswer advance(const LawPoint& from, const double* memory, const LawPoint& to, double* next) const override {
     next[0] = 0.0;
-    if (!(to.normal > 0.0)) return {};
+    if (!(to.normal > 0.0)) return {std::isnan(to.normal) ? to.normal : 0.0};
     const double limit = mu_ * to.normal, travel = to.u - from.u;
     double by_u = stiffness_, by_normal = 0.0;
     double trial = start(from, memory) + stiffness_ * travel;
@@ -99,7 +99,7 @@ class Jenkins final : public Law, public LawSlopes {
       case Contact::slips_forwards:
       case Contact::slips_backwards:
         return std::min(slip_rate(to, begins == Contact::slips_forwards ? 1.0 : -1.0),
-                        to.normal == 0.0 ? -inside : to.normal);
+                        to.normal == 0.0 && to.normal_rate == 0.0 ? -inside : to.normal);
       default:
         return mu_ * to.normal - std::abs(start(from, memory) + stiffness_ * (to.u - from.u));
     }
