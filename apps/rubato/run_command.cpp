@@ -12,6 +12,7 @@
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
 #include <rubato/model/doubtful_values.hpp>
+#include <rubato/model/finite_elements/check_finite_elements.hpp>
 #include <rubato/report/results_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
@@ -257,10 +258,18 @@ bool write_motion(const std::filesystem::path& folder) {
   }
 }
 
-/// Values of the model that are hardly meant.
-void tell_doubts(const PreparedStudy& study) {
-  for (const auto& [where, message] : model::doubtful_values(study.description.model, study.parameters))
+/// Values of the model that are hardly meant, and what is doubtful of a finite element model.
+/// @return what a finite element model is, for people
+std::vector<std::string> tell_doubts(const PreparedStudy& study) {
+  std::vector<model::DoubtfulValue> doubts = model::doubtful_values(study.description.model, study.parameters);
+  model::FiniteElementFindings findings;
+  if (const auto& elements = study.description.model.finite_elements) {
+    findings = model::check_finite_elements(*elements);
+    doubts.insert(doubts.end(), findings.doubts.begin(), findings.doubts.end());
+  }
+  for (const auto& [where, message] : doubts)
     tell(fmt::format("{}:{}:{}: warning: {}", where.file, where.line, where.column, message));
+  return findings.facts;
 }
 
 }  // namespace
@@ -268,7 +277,7 @@ void tell_doubts(const PreparedStudy& study) {
 int run(const RunOptions& options) {
   const std::unique_ptr<const PreparedStudy> prepared = prepare(options.study);
   const PreparedStudy& study = *prepared;
-  tell_doubts(study);
+  (void)tell_doubts(study);
   require_size(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
@@ -336,8 +345,14 @@ int run(const RunOptions& options) {
 int check(const StudyOptions& options) {
   const std::unique_ptr<const PreparedStudy> prepared = prepare(options);
   const PreparedStudy& study = *prepared;
-  tell_doubts(study);
+  const std::vector<std::string> facts = tell_doubts(study);
   fmt::print("{}\n  {}\n", study.description.title, study.kind->summary());
+  for (const std::string& fact : facts) fmt::print("  [model] {}\n", fact);
+  if (const auto& elements = study.description.model.finite_elements) {
+    constexpr Index first = 6;
+    if (const std::string text = model::first_frequencies(*elements, first); !text.empty())
+      fmt::print("  [model] {}\n", text);
+  }
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
     fmt::print("  {}: {}\n", study.analyses[i].name, study.planned[i].outline.summary);

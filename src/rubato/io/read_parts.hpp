@@ -3,8 +3,10 @@
 #include <rubato/io/study_folder.hpp>
 #include <rubato/io/toml_reader.hpp>
 #include <rubato/model/fields/model_fields.hpp>
+#include <rubato/model/finite_elements/finite_elements.hpp>
 
 #include <filesystem>
+#include <memory>
 
 // The parts of a study file, each in a file of its own. Private to io.
 namespace rubato::io {
@@ -17,6 +19,10 @@ void read_mesh(const model::NodeFileDescription& nodes, const StudyFolder& folde
                model::StructureDescription& structure);
 void read_mesh(const model::BeamFileDescription& beams, const StudyFolder& folder,
                model::StructureDescription& structure);
+
+/// The files that [model] names.
+void read_mesh(const model::FiniteElementFileDescription& files, const StudyFolder& folder,
+               std::shared_ptr<const model::FiniteElements>& to);
 
 /// [[analysis]]
 std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::string& key,

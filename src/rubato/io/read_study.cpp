@@ -138,6 +138,7 @@ std::string read_text(const std::filesystem::path& path, const std::string& name
   if (!stream)
     throw InvalidInput(where, fmt::format("{} \"{}\" cannot be opened: {}", what, name, std::strerror(errno)));
   std::string text;
+  text.reserve(size);  // growing by copies would take three times the memory
   std::vector<char> chunk(1u << 16);
   while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())), stream.gcount() > 0) {
     text.append(chunk.data(), static_cast<std::size_t>(stream.gcount()));

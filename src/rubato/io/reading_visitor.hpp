@@ -223,11 +223,11 @@ class ReadingVisitor {
   /// Whether a part of the fields is for this table; those who list all keys take every part.
   bool applies(bool condition) const { return condition; }
   template <class File>
-  void rows(const char* key, model::StructureDescription& structure, const char*) {
+  void rows(const char* key, auto& to, const char*) {
     if (auto reader = reader_.optional_table(key, fmt::format("[{}]", key))) {
       File file;
       ReadingVisitor(*reader, folder_).read(file);
-      read_mesh(file, folder_, structure);
+      read_mesh(file, folder_, to);
     }
   }
 

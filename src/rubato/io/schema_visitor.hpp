@@ -173,7 +173,7 @@ class SchemaVisitor {
   }
   bool applies(bool) const { return true; }
   template <class File>
-  void rows(const char* key, const model::StructureDescription&, const char* says) {
+  void rows(const char* key, const auto&, const char* says) {
     property(key, of<File>().schema(), {.says = says});
   }
 

@@ -1,10 +1,12 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/finite_elements/build_finite_elements.hpp>
 #include <rubato/model/laws/jenkins.hpp>
 #include <rubato/model/load_laws.hpp>
 #include <rubato/model/model.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +30,10 @@ class Builder final : public Places {
       take_matrices(*description_.matrices);
     else
       take_coordinates();
-    if (!description_.structure.is_empty()) take_structure();
+    if (description_.finite_elements)
+      take_finite_elements();
+    else if (!description_.structure.is_empty())
+      take_structure();
     take_springs();
     take_damping();
     take_sliders();
@@ -88,7 +93,7 @@ class Builder final : public Places {
 
   void take_coordinates() {
     const auto n = static_cast<Index>(description_.coordinates.size());
-    if (n == 0 && description_.structure.is_empty())
+    if (n == 0 && description_.structure.is_empty() && !description_.finite_elements)
       throw InvalidInput(description_.where,
                          "the study has no [[coordinate]], no [[node]] and no [matrices]; it needs one of them");
     model_.mass.resize(n);
@@ -136,6 +141,28 @@ class Builder final : public Places {
     model_.structure = std::move(built.structure);
     fixed_ = std::move(built.fixed);
     lines_ = std::move(built.lines);
+  }
+
+  void take_finite_elements() {
+    const Location& where = description_.finite_elements->where;
+    first_of_nodes_ = model_.size();
+    BuiltFiniteElements built = build_finite_elements(description_, parameters_, model_.mass);
+    model_.is_rotation.assign(static_cast<std::size_t>(first_of_nodes_), 0);
+    model_.is_rotation.insert(model_.is_rotation.end(), built.is_rotation.begin(), built.is_rotation.end());
+    for (std::string& name : built.coordinates) {
+      if (!places_.emplace(name, model_.size()).second)
+        throw InvalidInput(where, fmt::format("a [[coordinate]] and a degree of freedom of [model] are both called "
+                                              "\"{}\"; rename the coordinate",
+                                              name));
+      model_.coordinates.push_back(std::move(name));
+    }
+    for (Vector* values : {&model_.position, &model_.velocity}) {
+      values->conservativeResize(model_.size());
+      values->tail(model_.size() - first_of_nodes_).setZero();
+    }
+    fixed_.insert(built.fixed.begin(), built.fixed.end());
+    model_.structure = std::move(built.structure);
+    model_.matrices = std::move(built.matrices);
   }
 
   void take_matrices(const MatricesDescription& matrices) {
@@ -212,6 +239,9 @@ class Builder final : public Places {
     const std::string node = name.substr(0, dot), axis = name.substr(dot + 1);
     if (std::find(nodes.begin(), nodes.end(), node) == nodes.end()) return;
     const bool in_plane = model_.structure.dimension == 2;
+    if (description_.finite_elements)
+      throw InvalidInput(where, fmt::format("{} \"{}\", and the matrices have no such row: node {} has {}", role, name,
+                                            node, rows_of(node)));
     const bool is_axis = in_plane ? axis == "x" || axis == "y" || axis == "rz"
                                   : std::find(axis_names.begin(), axis_names.end(), axis) != axis_names.end();
     if (is_axis)
@@ -220,6 +250,14 @@ class Builder final : public Places {
                                             role, name, node, axis, axis.front() == 'r' ? "an inertia" : "a mass"));
     throw InvalidInput(where, fmt::format("{} \"{}\", but a node has {}", role, name,
                                           in_plane ? "x, y, rz in the plane" : "x, y, z, rx, ry, rz in space"));
+  }
+
+  /// The directions of a node that have a row.
+  std::string rows_of(const std::string& node) const {
+    std::vector<std::string> axes;
+    for (const char* axis : axis_names)
+      if (places_.count(node + "." + axis) > 0) axes.emplace_back(axis);
+    return axes.empty() ? "none: it is held" : fmt::format("{}", fmt::join(axes, ", "));
   }
 
   bool is_rotation_at(Index place) const {
@@ -264,6 +302,10 @@ class Builder final : public Places {
         description_.matrices->damping)
       throw InvalidInput(where_of(description_.damping),
                          "[damping] and the damping matrix of [matrices] would count damping twice; keep one");
+    if (!std::holds_alternative<std::monostate>(description_.damping) && description_.finite_elements &&
+        description_.finite_elements->damping)
+      throw InvalidInput(where_of(description_.damping),
+                         "[damping] and the damping matrix of [model] would count damping twice; keep one");
     model_.damping = build_damping(description_.damping, model_.size(), parameters_);
   }
 

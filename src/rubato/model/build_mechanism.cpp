@@ -1,5 +1,6 @@
 #include <rubato/model/build_mechanism.hpp>
 #include <rubato/model/build_parts.hpp>
+#include <rubato/model/finite_elements/finite_elements.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ namespace {
 
 void refuse_foreign_parts(const ModelDescription& d) {
   if (d.matrices) refuse(d.matrices->where, "[matrices]", "describe the structure by nodes and beams");
+  if (d.finite_elements) refuse(d.finite_elements->where, "[model]", "describe the structure by nodes and beams");
   if (!d.coordinates.empty())
     refuse(d.coordinates.front().where, "a [[coordinate]]", "take a [[node]] with a [[mass]]");
   if (!d.sliders.empty())

@@ -7,6 +7,7 @@
 #include <rubato/model/time_law_description.hpp>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -182,9 +183,12 @@ struct MatricesDescription {
   Location where;
 };
 
+struct FiniteElements;
+
 struct ModelDescription {
   std::vector<CoordinateDescription> coordinates;
   std::optional<MatricesDescription> matrices;
+  std::shared_ptr<const FiniteElements> finite_elements;  ///< of [model]; null: none
   StructureDescription structure;
   std::vector<BodyDescription> bodies;
   std::vector<JointDescription> joints;

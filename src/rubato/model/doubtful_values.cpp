@@ -1,6 +1,9 @@
 #include <rubato/model/doubtful_values.hpp>
+#include <rubato/model/finite_elements/finite_elements.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace rubato::model {
 namespace {
@@ -27,6 +30,22 @@ void take_material(const MaterialDescription& material, const numerics::Paramete
        fmt::format("{} is {:.6g} Pa, softer than gelatine; steel has 2.1e11 Pa: is it in GPa or MPa?", part, young)});
 }
 
+/// What accelerates all nodes alike pushes a free node by its share of the mass of the held ones beside it too, and no
+/// file tells that share where the rows of held nodes are absent.
+void take_inertia_of_held(const ModelDescription& description, std::vector<DoubtfulValue>& all) {
+  const auto& elements = description.finite_elements;
+  if (!elements || (!description.gravity && !description.base_motion)) return;
+  const bool is_lumped = elements->mass.values.nonZeros() == elements->mass.values.rows();
+  if (is_lumped || std::none_of(elements->is_held.begin(), elements->is_held.end(), [](char h) { return h != 0; }))
+    return;
+  all.push_back(
+      {description.gravity ? description.gravity->where : description.base_motion->where,
+       fmt::format("{} leaves out what the elements at held nodes would add: their share of the consistent "
+                   "mass is not in \"{}\"; to have it, export the matrices without the boundary condition, and "
+                   "hold the nodes by a [[support]]",
+                   description.gravity ? "[gravity]" : "[base_motion]", elements->mass.file)});
+}
+
 }  // namespace
 
 std::vector<DoubtfulValue> doubtful_values(const ModelDescription& description,
@@ -49,6 +68,7 @@ std::vector<DoubtfulValue> doubtful_values(const ModelDescription& description,
       take_friction(joint.friction->coefficient, fmt::format("joint \"{}\": coefficient of friction", joint.name),
                     parameters, all);
   for (const auto& material : description.structure.materials) take_material(material, parameters, all);
+  take_inertia_of_held(description, all);
   return all;
 }
 

@@ -107,6 +107,8 @@ struct BaseMotion {
 
 struct FullMatrices {
   SparseMatrix mass, damping, stiffness;  ///< [n x n], symmetric; damping may hold no entries
+  /// Forces that give all nodes the acceleration 1 along x, y and z [n x 3] [kg]; empty where there are no nodes.
+  Eigen::Matrix<double, Eigen::Dynamic, 3> inertia = {};
 };
 
 struct ModalDampingRatios {

@@ -6,7 +6,7 @@ namespace rubato::model {
 
 void refuse_parts_without_nodes(const ModelDescription& description) {
   const StructureDescription& parts = description.structure;
-  if (!parts.nodes.empty()) return;
+  if (!parts.nodes.empty() || description.finite_elements) return;
   const auto refuse = [&](const Location& where, const std::string& part, const std::string& of_bodies) {
     throw InvalidInput(where, fmt::format("{} acts on nodes, and the study has none; add [[node]] or [nodes]{}", part,
                                           description.bodies.empty() ? "" : "; " + of_bodies));

@@ -148,6 +148,7 @@ SparseMatrix damping_matrix(const model::Model& model, const SparseMatrix& mass,
 
 /// The forces that give every node the same acceleration, M times that motion, what supports hold included [n] [N].
 Vector inertia_of_nodes(const model::Model& model, const model::Axis& acceleration) {
+  if (model.matrices) return model.matrices->inertia * acceleration;
   Vector force = Vector::Zero(model.size());
   model::ElementEquations equations;
   const auto of_axis = [&](std::size_t axis) {
@@ -229,6 +230,7 @@ AssembledModel assemble_with_loads(const model::Model& model) {
   if (model.matrices) {
     parts.mass = model.matrices->mass;
     parts.stiffness = model.matrices->stiffness;
+    if (!model.springs.empty()) parts.stiffness = SparseMatrix(parts.stiffness + from_elements(n, model.springs));
   } else {
     Triplets mass, stiffness;
     add_structure(model.structure, mass, damping, stiffness);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/fields/finite_element_fields.hpp>
 #include <rubato/model/fields/law_fields.hpp>
 #include <rubato/model/fields/load_fields.hpp>
 #include <rubato/model/fields/mechanism_fields.hpp>
@@ -12,6 +13,8 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.where(model.where);
   visit.tables("coordinate", model.coordinates, "a mass that moves along one direction");
   visit.table("matrices", model.matrices, {.says = "full matrices instead of coordinates, springs and dampers"});
+  visit.template rows<FiniteElementFileDescription>("model", model.finite_elements,
+                                                    "a finite element model from the files of another program");
   visit.tables("spring", model.springs, "a linear spring between two coordinates, or one and the ground");
   visit.tables("damper", model.dampers, "a dashpot between two coordinates, or one and the ground");
   visit.table("damping", model.damping, {.says = "added to the dashpots; not beside a damping matrix"});
@@ -40,7 +43,8 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.tables("body", model.bodies, "a rigid body; makes the model a mechanism");
   visit.tables("joint", model.joints, "joins two nodes or bodies, or one and the ground; makes the model a mechanism");
   visit.excludes("coordinate", "matrices");
-  visit.some_of({"coordinate", "matrices", "node", "nodes", "body"});
+  visit.excludes("model", "matrices");
+  visit.some_of({"coordinate", "matrices", "model", "node", "nodes", "body"});
 }
 
 }  // namespace rubato::model

@@ -103,7 +103,7 @@ class QuantityVisitor {
   void matrix(const char*, const MatrixDescription&, const Key&) const {}
   void matrix(const char*, const std::optional<MatrixDescription>&, const Key&) const {}
   template <class File>
-  void rows(const char*, const StructureDescription&, const char*) const {}
+  void rows(const char*, const auto&, const char*) const {}
 
   // Rules between keys.
   void check(const auto&) const {}

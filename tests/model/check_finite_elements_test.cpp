@@ -1,0 +1,170 @@
+#include <gtest/gtest.h>
+
+#include <rubato/model/finite_elements/check_finite_elements.hpp>
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <vector>
+
+// A bar of cubes in space: struts between neighbouring nodes of a lattice, point masses at them. Struts do not resist
+// rigid motions.
+namespace rubato::model {
+namespace {
+
+struct Lattice {
+  std::vector<Eigen::Vector3d> places;
+  Mesh mesh;
+  std::vector<Eigen::Triplet<double>> stiffness, mass;
+};
+
+/// @param length  cubes along z
+Lattice lattice(int length, double scale = 1.0) {
+  Lattice made;
+  for (int k = 0; k <= length; ++k)
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) made.places.emplace_back(i + 0.1 * k, j, k);
+  for (std::size_t i = 0; i < made.places.size(); ++i) {
+    made.places[i] *= scale;
+    made.mesh.nodes.push_back(static_cast<std::int64_t>(i) + 1);
+    made.mesh.positions.push_back({made.places[i].x(), made.places[i].y(), made.places[i].z()});
+  }
+  for (int k = 0; k < length; ++k) {
+    const std::size_t first = static_cast<std::size_t>(4 * k);
+    made.mesh.elements.push_back({k + 1, "C3D8", made.mesh.element_nodes.size(), 8});
+    for (std::size_t i = 0; i < 8; ++i) made.mesh.element_nodes.push_back(first + i);
+    for (std::size_t i = 0; i < 8; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        const int row = static_cast<int>(3 * (first + i)) + a;
+        made.mass.emplace_back(row, row, 0.5);
+      }
+      for (std::size_t j = 0; j < i; ++j) {
+        const Eigen::Vector3d n = (made.places[first + i] - made.places[first + j]).normalized();
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) {
+            const double value = 1e6 * n[a] * n[b];
+            const int ia = static_cast<int>(3 * (first + i)) + a, ib = static_cast<int>(3 * (first + i)) + b;
+            const int ja = static_cast<int>(3 * (first + j)) + a, jb = static_cast<int>(3 * (first + j)) + b;
+            made.stiffness.emplace_back(ia, ib, value);
+            made.stiffness.emplace_back(ja, jb, value);
+            made.stiffness.emplace_back(ia, jb, -value);
+            made.stiffness.emplace_back(ja, ib, -value);
+          }
+      }
+    }
+  }
+  return made;
+}
+
+/// The lattice without the rows of its first `held` nodes.
+FiniteElementFiles files_of(const Lattice& lattice, int held) {
+  const int all = static_cast<int>(3 * lattice.places.size()), first = 3 * held;
+  FiniteElementFiles files;
+  const auto take = [&](FiniteElementMatrix& matrix, const std::vector<Eigen::Triplet<double>>& entries) {
+    SparseMatrix whole(all, all);
+    whole.setFromTriplets(entries.begin(), entries.end());
+    matrix.file = "matrix";
+    matrix.values = whole.bottomRightCorner(all - first, all - first);
+    for (int i = first; i < all; ++i) matrix.labels.push_back({i / 3 + 1, i % 3 + 1});
+  };
+  take(files.stiffness, lattice.stiffness);
+  take(files.mass, lattice.mass);
+  files.mesh = lattice.mesh;
+  return files;
+}
+
+bool tells(const FiniteElementFindings& findings, const std::string& part) {
+  return std::any_of(findings.facts.begin(), findings.facts.end(),
+                     [&](const std::string& fact) { return fact.find(part) != std::string::npos; });
+}
+
+TEST(RigidMotions, CostNothingAwayFromHeldNodes) {
+  const auto findings = check_finite_elements(join_finite_elements(files_of(lattice(6), 4)));
+  EXPECT_TRUE(tells(findings, "rigid motions cost nothing away from held nodes"));
+  EXPECT_TRUE(tells(findings, "4 nodes are held"));
+  EXPECT_TRUE(tells(findings, "lumped (diagonal)"));
+  EXPECT_TRUE(findings.doubts.empty());
+}
+
+TEST(RigidMotions, TellMassCentreAndInertiaOfAFreeBody) {
+  // One cube of side 1: eight masses of 0.5 at its corners, shifted by 0.1 along x at the top.
+  const auto findings = check_finite_elements(join_finite_elements(files_of(lattice(1), 0)));
+  EXPECT_TRUE(tells(findings, "mass of the rows 4 kg"));
+  // x: sum of (0.5 +- and 0.05 +-)^2: 4 (0.25 + 0.0025) = 1.01; y and z: 4 * 0.25 = 1.
+  EXPECT_TRUE(tells(findings,
+                    "centre of gravity (0.55, 0.5, 0.5) m; inertia about it (2, 2.01, 2.01) kg m2, products "
+                    "(0, 0, 0.1)"))
+      << findings.facts[4];
+  EXPECT_TRUE(tells(findings, "no node is held"));
+}
+
+TEST(RigidMotions, AreResistedWhereTheMeshIsAnother) {
+  FiniteElementFiles files = files_of(lattice(6), 4);
+  for (auto& at : files.mesh->positions) at[0] *= 1.01;
+  const auto findings = check_finite_elements(join_finite_elements(std::move(files)));
+  ASSERT_EQ(findings.doubts.size(), 1u);
+  EXPECT_NE(findings.doubts[0].message.find("a rigid turn about"), std::string::npos);
+}
+
+TEST(RigidMotions, AreResistedWhereRowsAreInAnotherOrder) {
+  FiniteElementFiles files = files_of(lattice(6), 4);
+  std::swap(files.stiffness.labels[20], files.stiffness.labels[21]);
+  EXPECT_FALSE(check_finite_elements(join_finite_elements(std::move(files))).doubts.empty());
+}
+
+TEST(SpinSoftening, IsRecognisedInAnyUnitsAndAboutAnyAxis) {
+  for (const double scale : {1.0, 1e3}) {
+    FiniteElementFiles files = files_of(lattice(6, scale), 4);
+    // K - Omega^2 M (1 - a a^T) of 120 rad/s about a; what a preload adds to turns is another matter.
+    const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0;
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
+    Matrix softened = files.stiffness.values;
+    for (Index i = 0; i < softened.rows(); ++i)
+      for (Index b = 0; b < 3; ++b)
+        softened(i, i - i % 3 + b) -= 120.0 * 120.0 * files.mass.values.coeff(i, i) * across(i % 3, b);
+    files.stiffness.values = softened.sparseView();
+    const auto findings = check_finite_elements(join_finite_elements(std::move(files)));
+    EXPECT_TRUE(tells(findings, "spin softening of 120 rad/s about the direction (0.333333, 0.666667, 0.666667)"));
+    for (const auto& doubt : findings.doubts) EXPECT_EQ(doubt.message.find("is resisted"), std::string::npos);
+  }
+}
+
+TEST(SpinSoftening, IsNotSeenInSpringsToTheGround) {
+  FiniteElementFiles files = files_of(lattice(6), 4);
+  files.stiffness.values.coeffRef(70, 70) += 1e4;
+  const auto findings = check_finite_elements(join_finite_elements(std::move(files)));
+  EXPECT_FALSE(tells(findings, "spin"));
+  EXPECT_EQ(findings.doubts.size(), 1u);
+}
+
+TEST(DoubtfulUnits, AreToldByTheMaterialOrByMassOverVolume) {
+  FiniteElementFiles files = files_of(lattice(6), 4);
+  files.mesh->materials.push_back({"STEEL", 206000.0, 7.8e-9, {}});
+  const auto by_material = check_finite_elements(join_finite_elements(std::move(files)));
+  ASSERT_EQ(by_material.doubts.size(), 1u);
+  EXPECT_NE(by_material.doubts[0].message.find("has the density 7.8e-09, as of a metal in t/mm3"), std::string::npos);
+  const auto by_volume = check_finite_elements(join_finite_elements(files_of(lattice(6, 1e3), 4)));
+  ASSERT_EQ(by_volume.doubts.size(), 1u);
+  EXPECT_NE(by_volume.doubts[0].message.find("which no structure has"), std::string::npos);
+}
+
+TEST(DoubtfulEntries, AreLargerThanTheirDiagonalAllows) {
+  FiniteElementFiles files = files_of(lattice(6), 4);
+  files.stiffness.values.coeffRef(3, 5) = files.stiffness.values.coeffRef(5, 3) = 1e8;
+  const auto findings = check_finite_elements(join_finite_elements(std::move(files)));
+  ASSERT_FALSE(findings.doubts.empty());
+  EXPECT_NE(findings.doubts[0].message.find("entry (6.x, 6.z) of the stiffness matrix"), std::string::npos);
+}
+
+TEST(HeldRows, OfAPenaltyAreLeftOut) {
+  FiniteElementFiles files = files_of(lattice(2), 0);
+  for (Index row = 0; row < 12; ++row) files.stiffness.values.coeffRef(row, row) = 1e36;
+  const FiniteElements joined = join_finite_elements(std::move(files));
+  EXPECT_EQ(joined.rows.size(), 24u);
+  EXPECT_EQ(std::count(joined.is_held.begin(), joined.is_held.end(), 1), 4);
+  ASSERT_EQ(joined.notes.size(), 1u);
+  EXPECT_NE(joined.notes[0].find("12 rows, the first 1.x"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace rubato::model
