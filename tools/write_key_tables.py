@@ -66,8 +66,10 @@ def rows(schema, known, prefix=""):
         if key in schema.get("required", []):
             default = "needed"
         yield f"| `{prefix}{key}` | {value(inner)} | {default} | {meaning.replace('|', chr(92) + '|')} |".replace("|  |", "| |")
-        if inner.get("type") == "object" and "properties" in inner:
-            yield from rows(inner, {}, f"{prefix}{key}.")
+        one, *others = inner.get("oneOf", [inner])
+        is_one_or_a_list = len(others) == 1 and others[0].get("items") == one
+        if one.get("type") == "object" and "properties" in one and (inner is one or is_one_or_a_list):
+            yield from rows(one, {}, f"{prefix}{key}.")
 
 
 def as_table(schema):

@@ -69,7 +69,7 @@ model::ModelDescription sledge_on_a_guide() {
   guide.between = {"sledge", "ground"};
   guide.at = {0.0, 0.0};
   guide.axis = {1.0, 1.0};
-  guide.lock = model::LockDescription{0.5, false, {}, {}, {}};
+  guide.locks = {{0.5, false, {}, {}, {}, {}}};
   model::JointDescription strut;
   strut.name = "strut";
   strut.type = model::JointDescription::Type::strut;

@@ -154,8 +154,8 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
             "\"180 * pi/180\", if turns, \"57.2958 * pi\"");
   EXPECT_EQ(
       verdict_with("at = \"pi/2\"", "at = 0.3"),
-      "study.toml:21:8: error: joint \"A\": lock: the joint starts at its lock, 0.3; say from which side it comes "
-      "by another angle, a little before it, from which initial = \"static\" (of a transient) lets it come to rest");
+      "study.toml:21:8: error: joint \"A\": lock: the joint starts at its lock, 0.3; say which values are free, side = "
+      "\"below\" or \"above\", or let it start at another angle");
   EXPECT_EQ(verdict_with("axis = [1.0, 0.0]", "axis = [0.0, 0.0]"),
             "study.toml:35:8: error: joint \"C\": the axis [0, 0] has no length");
   EXPECT_EQ(verdict_with("5 - 2*rate", "5 - 2*displacement").substr(0, 44),
@@ -174,12 +174,13 @@ TEST(ReadMechanism, NamesWhatIsWrongAndWhere) {
             "study.toml:43:8: error: a [[coordinate]] does not go with a ");
 }
 
-TEST(ReadMechanism, PointsToWhatTakesASecondLockOrALoadThatIsGiven) {
+TEST(ReadMechanism, ReadsListsOfLocksAndPointsToALoadThatIsGiven) {
   const std::string lock = "lock = { at = \"pi/2\", kind = \"latch\" }";
+  EXPECT_EQ(verdict_with(lock, "lock = [{ at = 1.5, kind = \"stop\" }, { at = -1.5 }]").substr(0, 65),
+            "study.toml:21:38: error: joint \"A\": lock(2) lacks the key \"kind\":");
   EXPECT_EQ(
-      verdict_with(lock, "lock = [{ at = 1.5, kind = \"stop\" }, { at = -1.5, kind = \"stop\" }]"),
-      "study.toml:21:8: error: joint \"A\": lock must be one table { ... }: a joint has one lock; give another to "
-      "a [[joint]] of type = \"strut\" between points of the same parts");
+      verdict_with(lock, "lock = []"),
+      "study.toml:21:8: error: joint \"A\": lock must be a table { ... }, or a list of tables, got an empty list");
   EXPECT_EQ(verdict_with(lock, "friction = [{ coefficient = 0.1, preload = 1.0, radius = 0.1 }]"),
             "study.toml:21:12: error: joint \"A\": friction must be one table { ... }, got a list of 1");
   for (const std::string load : {"10", "\"10\"", "\"N0\""})
@@ -197,7 +198,8 @@ TEST(ReadMechanism, NamesEveryKeyAndTheTableThatTakesAType) {
             "study.toml:14:3: error: the study has no key \"strutt\"; write [[joint]] with type = \"strut\"");
   EXPECT_EQ(verdict_with("[[joint]]", "[[hinge]]"),
             "study.toml:14:3: error: the study has no key \"hinge\"; write [[joint]] with type = \"revolute\"");
-  EXPECT_NE(verdict_with("[[joint]]", "[[linkage]]").find("gravity, body, joint, analysis"), std::string::npos);
+  EXPECT_NE(verdict_with("[[joint]]", "[[linkage]]").find("gravity, body, joint, analysis"),
+            std::string::npos);
   EXPECT_NE(verdict_with("type = \"prismatic\"", "type = \"slot\"").find("planar, screw, strut"), std::string::npos);
 }
 
@@ -212,8 +214,9 @@ TEST(ReadMechanism, RefusesAStrutOnWhichNothingActs) {
   EXPECT_EQ(with_strut(""),
             "study.toml:42:8: error: joint \"S\" is a strut that does nothing; give it \"force\", \"stiffness\", "
             "\"damping\", \"drive\", \"lock\" or \"friction\"; force = 0 only measures its length");
-  for (const std::string keys : {"force = 0", "stiffness = 1", "damping = 1", "drive = \"2.3 + 0.1*t\"",
-                                 "lock = { at = 3, kind = \"stop\" }", "friction = { coefficient = 1, preload = 1 }"})
+  for (const std::string keys :
+       {"force = 0", "stiffness = 1", "damping = 1", "drive = \"2.3 + 0.1*t\"", "lock = { at = 3, kind = \"stop\" }",
+        "friction = { coefficient = 1, preload = 1 }"})
     EXPECT_EQ(with_strut(keys), "no complaint") << keys;
   EXPECT_EQ(
       with_strut("drive = \"-1 - t\""),

@@ -169,6 +169,19 @@ class ReadingVisitor {
       to.push_back(std::move(description));
     }
   }
+  /// One table within the table, or a list of them.
+  template <class Description>
+  void table_or_tables(const char* key, std::vector<Description>& to, const Key& about) {
+    if (!reader_.has_list(key)) {
+      part(key, about, [&](ReadingVisitor& inner) { fields(inner, to.emplace_back()); });
+      return;
+    }
+    for (TomlReader& reader : reader_.parts(key)) {
+      ReadingVisitor inner(reader, folder_);
+      fields(inner, to.emplace_back());
+      inner.finish();
+    }
+  }
   /// Tables that share a list with others: each begins as a description that says which it is.
   template <class Description>
   void tables_like(const char* key, std::vector<Description>& to, const Description& prototype, const char*) {

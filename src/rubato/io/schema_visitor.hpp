@@ -150,6 +150,11 @@ class SchemaVisitor {
     property(key, list(of<Description>().schema(), {0}), {.says = says});
   }
   template <class Description>
+  void table_or_tables(const char* key, const std::vector<Description>&, const Key& about) {
+    const Json one = of<Description>().schema();
+    property(key, one_of({one, list(one, {1})}), about);
+  }
+  template <class Description>
   void tables_like(const char* key, const std::vector<Description>&, Description prototype, const char* says) {
     SchemaVisitor one;
     fields(one, prototype);

@@ -262,6 +262,18 @@ std::vector<TomlReader> TomlReader::tables(const std::string& key) {
   return readers;
 }
 
+std::vector<TomlReader> TomlReader::parts(const std::string& key) {
+  std::vector<TomlReader> readers;
+  const toml::node& found = required(key);
+  const auto* list = found.as_array();
+  if (!list || list->empty() ||
+      !std::all_of(list->begin(), list->end(), [](const toml::node& n) { return n.is_table(); }))
+    refuse_type(found, key, "a table { ... }, or a list of tables");
+  for (const toml::node& entry : *list)
+    readers.emplace_back(*entry.as_table(), fmt::format("{}({})", name_of_part(key), readers.size() + 1), file_);
+  return readers;
+}
+
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());

@@ -57,6 +57,8 @@ class TomlReader {
   std::optional<TomlReader> optional_table(const std::string& key, const std::string& what);
   /// [[key]] tables, in order; empty if there are none.
   std::vector<TomlReader> tables(const std::string& key);
+  /// A list of tables within this one. Throws for an empty one.
+  std::vector<TomlReader> parts(const std::string& key);
   const toml::node* node(const std::string& key);
 
   /// Throws for the first of `keys` that is present: each belongs to an alternative of `chosen`.

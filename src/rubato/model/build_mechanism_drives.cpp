@@ -11,29 +11,6 @@
 namespace rubato::model {
 namespace {
 
-Lock lock_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-             const FreeCoordinate& s, double value) {
-  const LockDescription& given = *joint.lock;
-  const bool is_angle = s.is_angle();
-  Lock lock;
-  lock.name = joint.name;
-  lock.s = s;
-  lock.is_latch = given.is_latch;
-  lock.at = is_angle ? assembly.angle(given.at, part + ": lock: at") : assembly.number(given.at, part + ": lock: at");
-  if (given.stiffness) lock.stiffness = assembly.positive(*given.stiffness, part + ": lock: stiffness");
-  if (given.damping) lock.damping = assembly.at_least_zero(*given.damping, part + ": lock: damping");
-  if (!(std::abs(lock.at - value) > 1e-9 * (1.0 + std::abs(value))))
-    throw InvalidInput(given.where, fmt::format("{0}: lock: the joint starts at its lock, {1}; say from which side it "
-                                                "comes by another {2}, a little before it, from which initial = "
-                                                "\"static\" (of a transient) lets it come to rest",
-                                                part, lock.at, is_angle ? "angle" : "displacement"));
-  if (joint.type == JointDescription::Type::strut && !(lock.at > 0.0))
-    throw InvalidInput(given.at.where,
-                       fmt::format("{}: lock: at is a length and must be positive, got {}", part, lock.at));
-  lock.sign = lock.at > value ? 1.0 : -1.0;
-  return lock;
-}
-
 /// The node and axis that a coordinate is.
 std::pair<Index, std::size_t> place_of(const Mechanism& mechanism, Index coordinate) {
   for (std::size_t node = 0; node < mechanism.nodes.size(); ++node)
@@ -63,8 +40,8 @@ void take_following_force(MechanismAssembly& assembly, const ForceDescription& f
 MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                    bool is_angle, double value) {
   const DriveDescription& drive = *joint.motion;
-  if (joint.lock)
-    throw InvalidInput(joint.lock->where,
+  if (!joint.locks.empty())
+    throw InvalidInput(joint.locks.front().where,
                        fmt::format("{} has a drive and a lock: what is driven cannot lock; leave one out, or drive it "
                                    "by a {}",
                                    part, is_angle ? "moment" : "force"));
@@ -98,11 +75,14 @@ CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescripti
                       : table.beyond == TableDescription::Beyond::zero ? CoordinateTable::Beyond::zero
                                                                        : CoordinateTable::Beyond::error;
   CoordinateTable law = make_table(table.times, table.values, beyond);
-  if (beyond != CoordinateTable::Beyond::error || !joint.lock) return law;
+  if (beyond != CoordinateTable::Beyond::error) return law;
   // Up to a lock the rows need reach no further: what lies beyond is looked at, and not kept.
-  const double lock = assembly.number(joint.lock->at, part + ": lock: at");
-  if (lock > value && lock <= law.at.back()) law.after = CoordinateTable::Beyond::hold;
-  if (lock < value && lock >= law.at.front()) law.before = CoordinateTable::Beyond::hold;
+  for (const LockDescription& lock : joint.locks) {
+    const double at = assembly.number(lock.at, part + ": lock: at");
+    const bool is_above = lock.side ? *lock.side == LockDescription::Side::below : at > value;
+    if (is_above && at <= law.at.back()) law.after = CoordinateTable::Beyond::hold;
+    if (!is_above && at >= law.at.front()) law.before = CoordinateTable::Beyond::hold;
+  }
   return law;
 }
 
@@ -136,14 +116,6 @@ int take_friction(MechanismAssembly& assembly, const JointDescription& joint, co
 double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part) {
   const auto& radius = joint.friction->radius;
   return radius ? assembly.positive(*radius, part + ": friction: radius") : 1.0;
-}
-
-AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                 const FreeCoordinate& s, double value) {
-  if (!joint.lock) return {};
-  const Lock lock = lock_of(assembly, joint, part, s, value);
-  const int index = assembly.mechanism.add_lock(lock);
-  return lock.is_latch ? AtLock{index, false} : AtLock{};
 }
 
 void take_force(MechanismAssembly& assembly, const ForceDescription& force) {

@@ -40,7 +40,7 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   mechanism.joint_coordinates.push_back({joint.name, s});
   const int pressing = is_length ? 0 : s.is_angle() ? 2 : 1;
   if (joint.friction) take_friction(assembly, joint, part, s, {0, pressing}, rubbing_radius(assembly, joint, part));
-  take_laws(assembly, joint, part, s, value, take_lock(assembly, joint, part, s, value));
+  take_laws(assembly, joint, part, s, value, take_locks(assembly, joint, part, s, value));
 }
 
 /// A mass that does not turn has no axes with which a joint could do more than hold its place.

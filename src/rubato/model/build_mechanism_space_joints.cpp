@@ -119,7 +119,7 @@ void take_coordinate(MechanismAssembly& assembly, const JointDescription& joint,
   s.zero = now - value;
   mechanism.space_coordinates.push_back({joint.name, s});
   if (joint.friction && has_laws) take_space_friction(assembly, joint, built, s, lead);
-  if (has_laws) take_laws(assembly, joint, built.part, s, value, take_lock(assembly, joint, built.part, s, value));
+  if (has_laws) take_laws(assembly, joint, built.part, s, value, take_locks(assembly, joint, built.part, s, value));
 }
 
 /// Of a cylindrical joint: along and around the axis together, against the slip of the pin's surface.

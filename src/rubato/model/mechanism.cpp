@@ -101,7 +101,7 @@ SpacePoint Mechanism::space_point(Index node, const numerics::Vector3& at) const
 
 int Mechanism::add_lock(Lock lock) {
   const int index = static_cast<int>(locks.size());
-  const AtLock when{index, true};
+  const AtLock when{index, 1, true};
   std::visit(
       [&](const auto& s) {
         if (lock.stiffness > 0.0) {

@@ -127,7 +127,7 @@ struct Mechanism {
   /// The point of a node in space that lies at a point of the world at the start.
   SpacePoint space_point(Index node, const numerics::Vector3& at) const;
   /// A lock with the parts that make it: a spring and a damper, or a constraint. A latch with a stiffness keeps it for
-  /// good. What it turns off is made with AtLock{index, false}.
+  /// good. What it turns off is made with AtLock{index, 1, false}.
   /// @return its index
   int add_lock(Lock lock);
   /// Adds friction, with the constraint that lets it stick. @return its index

@@ -38,8 +38,10 @@ struct BodyDescription {
 
 /// A limit of the coordinate of a joint.
 struct LockDescription {
+  enum class Side { below, above };
   Quantity at;  ///< [rad] or [m]
   bool is_latch = false;
+  std::optional<Side> side;                    ///< of `at` that is free; where the joint starts unless given
   std::optional<Quantity> stiffness, damping;  ///< [N m/rad] or [N/m]; without stiffness it is rigid
   Location where;
 };
@@ -79,7 +81,7 @@ struct JointDescription {
   std::optional<Quantity> drive;
   std::optional<TableDescription> drive_table;       ///< instead, over the coordinate, whose values stand as its times
   std::optional<Quantity> stiffness, rest, damping;  ///< of a spring and a damper on its coordinate
-  std::optional<LockDescription> lock;
+  std::vector<LockDescription> locks;
   std::optional<FrictionDescription> friction;
   Location where;
 };

@@ -1,5 +1,8 @@
 #include <rubato/model/mechanism_drawing.hpp>
 
+#include <algorithm>
+#include <iterator>
+
 namespace rubato::model {
 namespace {
 
@@ -13,8 +16,11 @@ DrawnJoint::Law law_of(const JointDescription& joint) {
 
 DrawnJoint::Limit limit_of(const JointDescription& joint) {
   using Limit = DrawnJoint::Limit;
-  if (!joint.lock) return Limit::none;
-  return joint.lock->is_latch ? Limit::latch : Limit::stop;
+  const auto latches =
+      std::count_if(joint.locks.begin(), joint.locks.end(), [](const LockDescription& lock) { return lock.is_latch; });
+  if (joint.locks.empty()) return Limit::none;
+  if (latches == 0) return Limit::stop;
+  return latches == std::ssize(joint.locks) ? Limit::latch : Limit::both;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct DrawnLine {
 struct DrawnJoint {
   /// What acts on its coordinate: of several the first of drive, spring, force, damper.
   enum class Law { none, drive, spring, force, damper };
-  enum class Limit { none, stop, latch };
+  enum class Limit { none, stop, latch, both };
   std::string name;
   JointDescription::Type type = JointDescription::Type::revolute;
   DrawnPoint first, second;      ///< where it holds its parts

@@ -27,8 +27,8 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
 /// Whether anything acts on the coordinate that a joint leaves free.
 inline bool has_law(const MechanismAssembly& assembly, const JointDescription& joint) {
   const auto& laws = assembly.description.laws;
-  return joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping || joint.lock ||
-         joint.friction ||
+  return joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping ||
+         !joint.locks.empty() || joint.friction ||
          std::any_of(laws.begin(), laws.end(), [&](const LawDescription& law) { return law.joint == joint.name; });
 }
 
@@ -59,11 +59,11 @@ int take_friction(MechanismAssembly& assembly, const JointDescription& joint, co
 /// Of the pin or the thread that rubs [m]; 1 for what slides.
 double rubbing_radius(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part);
 
-/// The lock of a joint on the coordinate that it leaves free.
+/// The locks of a joint on the coordinate that it leaves free.
 /// @param value  of s in the configuration given
 /// @return the phase in which the laws are at work that a latch ends
-AtLock take_lock(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
-                 const FreeCoordinate& s, double value);
+AtLock take_locks(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                  const FreeCoordinate& s, double value);
 
 /// The table of a joint's moment or force over its coordinate.
 /// @param value  of the coordinate in the configuration given

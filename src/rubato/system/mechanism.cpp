@@ -91,7 +91,8 @@ Mechanism::Mechanism(model::Mechanism model) : model_(std::move(model)) {
   start_.memory = Vector::Zero(model_.law_memory_size);
   start_.acceleration = start_.auxiliary_acceleration = Vector::Zero(n);
   start_.multiplier = Vector::Zero(constraint_count());
-  start_.phase.assign(model_.locks.size(), model::lock_open);
+  for (const auto& lock : model_.locks)
+    start_.phase.push_back(lock.is_met_at_start ? model::lock_engaged : model::lock_open);
   start_.rubbing.assign(model_.frictions.size(), model::friction_free);
   start_.stuck_at = Vector::Zero(static_cast<Index>(model_.frictions.size()));
 }

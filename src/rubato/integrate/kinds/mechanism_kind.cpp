@@ -26,7 +26,9 @@ std::string MechanismKind::summary() const {
   for (const auto& friction : model.frictions) constraints -= rows(friction.sticking_joint);
   for (const auto& drive : model.drives) of_drives += rows(drive.joint);
   const auto equations = mechanism_.equations();
-  const auto redundant = static_cast<Index>(make_consistent(*equations, mechanism_.start()).redundant.size());
+  system::State without_locks = mechanism_.start();
+  std::fill(without_locks.phase.begin(), without_locks.phase.end(), model::lock_open);
+  const auto redundant = static_cast<Index>(make_consistent(*equations, without_locks).redundant.size());
   const Index left = mechanism_.size() - (constraints - redundant);
   return fmt::format("{}, {} ({} of drives, {} redundant), {} left, {}", counted(mechanism_.size(), "coordinate"),
                      counted(constraints, "constraint"), of_drives, redundant,

@@ -1,5 +1,6 @@
 #include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
+#include <rubato/integrate/kinds/start_on_locks.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 
 #include <fmt/format.h>
@@ -116,7 +117,7 @@ std::string immense_numbers(const system::Mechanism& mechanism) {
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
                               std::vector<std::string>& warnings, bool moves) {
   system::MechanismEquations equations(mechanism);
-  const auto start = make_consistent(equations, mechanism.start());
+  const ConsistentStart start = make_consistent_on_locks(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
   if (start.is_assembled && start.worst_rate >= 0) {
     std::vector<std::string> drives;
@@ -184,7 +185,10 @@ void settle_start(const Location& where, const system::Mechanism& mechanism, dou
   system::MechanismEquations equations(mechanism);
   equations.set_duration(duration);
   refuse_unknown_reactions(where, equations, state);
-  if (!find_phases_of_new_velocities(equations, state, 1e-6 * duration))
+  bool is_settled = find_phases_of_new_velocities(equations, state, 1e-6 * duration);
+  while (is_settled && release_pulling_stop(mechanism, state))
+    is_settled = find_phases_of_new_velocities(equations, state, 1e-6 * duration);
+  if (!is_settled)
     throw InvalidInput(
         where,
         "no accelerations were found at the start that go with the friction of the joints: with "

@@ -96,6 +96,9 @@ void fields(auto& visit, Like<LockDescription> auto& lock) {
   visit.word(
       "kind", lock.is_latch, {{"stop", false}, {"latch", true}},
       {.required = true, .says = "a stop holds from one side and lets go; a latch holds for good and ends the drive"});
+  using Side = LockDescription::Side;
+  visit.word("side", lock.side, {{"below", Side::below}, {"above", Side::above}},
+             {.says = "which values are free; needed by a joint that starts at its lock", .unless = "where it starts"});
   visit.quantity("stiffness", lock.stiffness, {.unit = "N m/rad or N/m", .unless = "rigid", .range = Range::positive});
   visit.quantity("damping", lock.damping, {.unit = "N m s/rad or N s/m", .says = "goes with a stiffness"});
   visit.requires_beside("damping", "stiffness");
@@ -258,14 +261,7 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
       throw InvalidInput(joint.rest->where, reader.what() + ": rest goes with a stiffness");
   });
   visit.table("friction", joint.friction, {.says = "Coulomb friction on its coordinate"}, joint.type);
-  visit.check([](auto& reader) {
-    if (reader.has_list("lock"))
-      throw InvalidInput(reader.where("lock"),
-                         reader.what() +
-                             ": lock must be one table { ... }: a joint has one lock; give another to a "
-                             "[[joint]] of type = \"strut\" between points of the same parts");
-  });
-  visit.table("lock", joint.lock, {.says = "a limit of the angle or displacement"});
+  visit.table_or_tables("lock", joint.locks, {.says = "a limit of the angle or displacement, or a list of them"});
   visit.excludes("drive", "friction");
   visit.excludes("drive", "lock");
   std::vector<const char*> with_radius;

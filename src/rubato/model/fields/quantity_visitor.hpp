@@ -62,6 +62,10 @@ class QuantityVisitor {
     for (const Description& description : descriptions) fields(*this, description);
   }
   template <class Description>
+  void table_or_tables(const char*, const std::vector<Description>& descriptions, const Key&) const {
+    for (const Description& description : descriptions) fields(*this, description);
+  }
+  template <class Description>
   void tables_like(const char*, const std::vector<Description>& descriptions, const Description& prototype,
                    const char*) const {
     for (const Description& description : descriptions)

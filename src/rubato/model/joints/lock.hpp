@@ -23,11 +23,12 @@ struct Lock {
   std::string name;  ///< of the joint
   FreeCoordinate s;
   bool is_latch = false;
-  double at = 0.0;         ///< [rad] or [m]
-  double stiffness = 0.0;  ///< [N m/rad] or [N/m]; 0: a constraint
-  double damping = 0.0;    ///< [N m s/rad] or [N s/m]
-  double sign = 1.0;       ///< +1: open while s < at; -1: while s > at
-  int joint = -1;          ///< the constraint that holds it, among the mechanism's; -1: it has a stiffness
+  double at = 0.0;               ///< [rad] or [m]
+  double stiffness = 0.0;        ///< [N m/rad] or [N/m]; 0: a constraint
+  double damping = 0.0;          ///< [N m s/rad] or [N s/m]
+  double sign = 1.0;             ///< +1: open while s < at; -1: while s > at
+  bool is_met_at_start = false;  ///< the configuration given lies on it
+  int joint = -1;                ///< the constraint that holds it, among the mechanism's; -1: it has a stiffness
 
   bool is_rigid() const { return joint >= 0; }
 };

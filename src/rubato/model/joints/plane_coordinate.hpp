@@ -37,11 +37,16 @@ struct PlaneCoordinate {
   double second_rate(const Motion& motion, const double* acceleration) const;
 };
 
-/// Where a part stands in the phases of a lock.
+/// Where a part stands in the phases of one lock, or of several in a row.
 struct AtLock {
-  int lock = -1;           ///< of which; -1: always at work
-  bool is_engaged = true;  ///< at work while the lock is engaged, or while it is open
-  bool is_at_work(const Motion& motion) const { return lock < 0 || (motion.phase[lock] != 0) == is_engaged; }
+  int lock = -1;           ///< the first
+  int count = 0;           ///< 0: always at work
+  bool is_engaged = true;  ///< at work while one of them is engaged, or while all are open
+  bool is_at_work(const Motion& motion) const {
+    bool any = false;
+    for (int i = 0; i < count; ++i) any = any || motion.phase[lock + i] != 0;
+    return count == 0 || any == is_engaged;
+  }
 };
 
 /// The force -stiffness (s - rest) on s. @param stiffness  [N m/rad] or [N/m]

@@ -25,8 +25,12 @@ JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(
       if (mechanism.model().dimension == 3 && !is_drive(name) && !name.starts_with("lock")) continue;
       auto found = std::find_if(rows_.begin(), rows_.end(), [&](const Rows& r) { return r.name == name; });
       if (found == rows_.end()) found = rows_.insert(found, Rows{name, {}, {}, name == "tension" ? 1.0 : -1.0});
+      if (!found->joints.empty() && found->joints.back() == joint->name()) {  // several locks of one joint
+        found->places.back().push_back(place);
+        continue;
+      }
       found->joints.push_back(joint->name());
-      found->places.push_back(place);
+      found->places.push_back({place});
     }
   }
 }
@@ -63,7 +67,11 @@ void JointReactions::add_space(TableLayout& layout) const {
 void JointReactions::append(const system::State& state, std::vector<double>& row) {
   if (mechanism_.model().dimension == 3) append_space(motion_.go_to(state, model::Side::left), state.multiplier, row);
   for (const Rows& reaction : rows_)
-    for (const Index i : reaction.places) row.push_back(reaction.sign * state.multiplier[i]);
+    for (const auto& places : reaction.places) {
+      double sum = state.multiplier[places.front()];
+      for (std::size_t i = 1; i < places.size(); ++i) sum += state.multiplier[places[i]];
+      row.push_back(reaction.sign * sum);
+    }
 }
 
 void JointReactions::append_space(const model::Motion& motion, const Vector& multiplier, std::vector<double>& row) {

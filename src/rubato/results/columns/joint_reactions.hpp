@@ -25,7 +25,7 @@ class JointReactions final : public ColumnGroup {
   struct Rows {
     std::string name;
     std::vector<std::string> joints;
-    std::vector<Index> places;
+    std::vector<std::vector<Index>> places;  // of each joint: several locks make one reaction
     double sign = -1.0;
   };
   void add_space(TableLayout& layout) const;

@@ -126,7 +126,7 @@ void write_joints(const std::string& analysis, const model::MechanismDrawing& dr
   std::vector<std::string> types;
   for (const auto& kind : model::joint_kinds()) types.emplace_back(kind.name);
   const std::vector<std::string> points = drawing.names(), laws{"none", "drive", "spring", "force", "damper"},
-                                 limits{"none", "stop", "latch"};
+                                 limits{"none", "stop", "latch", "both"};
   const auto rows = sink.open({analysis,
                                "joints",
                                "joint",
