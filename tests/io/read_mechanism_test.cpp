@@ -213,10 +213,10 @@ TEST(ReadMechanism, RefusesAStrutOnWhichNothingActs) {
   };
   EXPECT_EQ(with_strut(""),
             "study.toml:42:8: error: joint \"S\" is a strut that does nothing; give it \"force\", \"stiffness\", "
-            "\"damping\", \"drive\", \"lock\" or \"friction\"; force = 0 only measures its length");
+            "\"damping\", \"drive\", \"lock\", \"rate\" or \"friction\"; force = 0 only measures its length");
   for (const std::string keys :
        {"force = 0", "stiffness = 1", "damping = 1", "drive = \"2.3 + 0.1*t\"", "lock = { at = 3, kind = \"stop\" }",
-        "friction = { coefficient = 1, preload = 1 }"})
+        "rate = 1", "friction = { coefficient = 1, preload = 1 }"})
     EXPECT_EQ(with_strut(keys), "no complaint") << keys;
   EXPECT_EQ(
       with_strut("drive = \"-1 - t\""),

@@ -120,6 +120,12 @@ Inertia inertia_of(const MechanismAssembly& assembly, const BodyDescription& bod
   return inertia;
 }
 
+void set_velocity(Mechanism& mechanism, Index node, std::size_t axis, double velocity) {
+  MechanismNode& of = mechanism.nodes[static_cast<std::size_t>(node)];
+  of.velocity[axis] = velocity;
+  of.has_velocity[axis] = true;
+}
+
 Index add_plane_body(MechanismAssembly& assembly, const BodyDescription& body, const std::string& part,
                      const Inertia& inertia) {
   if (!body.rotation.empty())
@@ -132,8 +138,7 @@ Index add_plane_body(MechanismAssembly& assembly, const BodyDescription& body, c
   const Index node = mechanism.add_node(body.name, {at[0], at[1], turn});
   mechanism.add_mass(node, inertia.mass, inertia.tensor(2, 2));
   if (!body.angular_velocity.empty())
-    mechanism.nodes[static_cast<std::size_t>(node)].velocity[5] =
-        assembly.number(body.angular_velocity[0], part + "angular_velocity");
+    set_velocity(mechanism, node, 5, assembly.number(body.angular_velocity[0], part + "angular_velocity"));
   assembly.inertia += inertia.tensor(2, 2);
   return node;
 }
@@ -160,8 +165,7 @@ Index add_space_body(MechanismAssembly& assembly, const BodyDescription& body, c
   mechanism.add_space_body(node, inertia.mass, inertia.tensor);
   if (!body.angular_velocity.empty()) {
     const Axis given = assembly.point(body.angular_velocity, body.where, part + "angular_velocity");
-    for (Index i = 0; i < 3; ++i)
-      mechanism.nodes[static_cast<std::size_t>(node)].velocity[static_cast<std::size_t>(i) + 3] = given[i];
+    for (Index i = 0; i < 3; ++i) set_velocity(mechanism, node, static_cast<std::size_t>(i) + 3, given[i]);
   }
   assembly.inertia += inertia.tensor.trace() / 3.0;
   return node;
@@ -184,7 +188,7 @@ void take_body(MechanismAssembly& assembly, const BodyDescription& body) {
   if (!body.velocity.empty()) {
     const Axis given = assembly.point(body.velocity, body.where, part + "velocity");
     for (Index i = 0; i < assembly.mechanism.dimension; ++i)
-      assembly.mechanism.nodes[static_cast<std::size_t>(node)].velocity[static_cast<std::size_t>(i)] = given[i];
+      set_velocity(assembly.mechanism, node, static_cast<std::size_t>(i), given[i]);
   }
   if (body.shape) assembly.mechanism.drawing.shapes.push_back(drawn_shape(assembly, *body.shape, node));
   assembly.nodes.emplace(body.name, node);

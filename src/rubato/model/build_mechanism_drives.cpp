@@ -64,6 +64,15 @@ MotionLaw drive_of(const MechanismAssembly& assembly, const JointDescription& jo
   return law;
 }
 
+void take_start_rate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                     const FreeCoordinate& s) {
+  if (joint.motion)
+    throw InvalidInput(joint.rate->where,
+                       part + " has a drive and a rate: its drive says how it moves at the start; leave the rate out");
+  assembly.mechanism.start_rates.push_back(
+      {joint.name, s, assembly.number(*joint.rate, part + ": rate"), joint.rate->where});
+}
+
 CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                          double value) {
   const TableDescription& table = *joint.drive_table;

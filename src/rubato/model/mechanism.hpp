@@ -24,9 +24,10 @@ namespace rubato::model {
 /// A node of a mechanism: a point with axes of its own.
 struct MechanismNode {
   std::string name;
-  std::array<double, 7> numbers{};   ///< at the start: see Motion; the plane uses three
-  std::array<double, 6> velocity{};  ///< at the start, by the axes x, y, z, rx, ry, rz
-  std::array<Index, 6> place{};      ///< tangent coordinate of each axis; `ground` where fixed or absent
+  std::array<double, 7> numbers{};     ///< at the start: see Motion; the plane uses three
+  std::array<double, 6> velocity{};    ///< at the start, by the axes x, y, z, rx, ry, rz
+  std::array<bool, 6> has_velocity{};  ///< whether it is given, and not left out
+  std::array<Index, 6> place{};        ///< tangent coordinate of each axis; `ground` where fixed or absent
 };
 
 /// What it takes to accelerate one axis of a node because another moves: a symmetric pair counts once.
@@ -34,6 +35,14 @@ struct MassEntry {
   Index node = 0, other_node = 0;
   std::size_t axis = 0, other_axis = 0;
   double value = 0.0;  ///< [kg], [kg m] or [kg m2]
+};
+
+/// The rate that the coordinate of a joint has at the start.
+struct StartRate {
+  std::string name;  ///< of the joint
+  FreeCoordinate s;
+  double rate = 0.0;  ///< [rad/s] or [m/s]
+  Location where;
 };
 
 /// A force along an axis of the world on a tangent coordinate, or a moment about an axis of the node.
@@ -84,6 +93,7 @@ struct Mechanism {
   std::vector<SpaceReaction> reactions;                 ///< in space
   std::vector<TurnCounter> turn_counters;
   std::vector<Lock> locks;
+  std::vector<StartRate> start_rates;
   std::vector<PrescribedMotion> drives;
   std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
   std::vector<MechanismLaw> laws;

@@ -75,6 +75,7 @@ struct JointDescription {
   Location second_axis_where;
   std::optional<Quantity> lead;    ///< of a screw [m] a turn; negative: left-handed
   std::optional<Quantity> value;   ///< of its angle or displacement in the configuration given [rad] or [m]
+  std::optional<Quantity> rate;    ///< of its angle, displacement or length at the start [rad/s] or [m/s]
   std::optional<Quantity> length;  ///< of a distance [m]; as the points lie unless given
   std::optional<DriveDescription> motion;
   /// Moment or force, + on the second; may use `angle`, `displacement` or `length`, `rate`, `t`.

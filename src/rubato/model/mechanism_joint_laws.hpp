@@ -27,7 +27,7 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
 /// Whether anything acts on the coordinate that a joint leaves free.
 inline bool has_law(const MechanismAssembly& assembly, const JointDescription& joint) {
   const auto& laws = assembly.description.laws;
-  return joint.motion || joint.drive || joint.drive_table || joint.stiffness || joint.damping ||
+  return joint.motion || joint.rate || joint.drive || joint.drive_table || joint.stiffness || joint.damping ||
          !joint.locks.empty() || joint.friction ||
          std::any_of(laws.begin(), laws.end(), [&](const LawDescription& law) { return law.joint == joint.name; });
 }
@@ -37,7 +37,7 @@ inline void require_law(const MechanismAssembly& assembly, const JointDescriptio
   if (has_law(assembly, joint)) return;
   throw InvalidInput(joint.where,
                      fmt::format("{} is a strut that does nothing; give it \"force\", \"stiffness\", \"damping\", "
-                                 "\"drive\", \"lock\" or \"friction\"; force = 0 only measures its length",
+                                 "\"drive\", \"lock\", \"rate\" or \"friction\"; force = 0 only measures its length",
                                  part));
 }
 
@@ -70,6 +70,10 @@ AtLock take_locks(MechanismAssembly& assembly, const JointDescription& joint, co
 CoordinateTable table_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                          double value);
 
+/// The rate that a joint has at the start.
+void take_start_rate(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
+                     const FreeCoordinate& s);
+
 /// The drive, the law of a moment or force, the spring and the damper.
 /// @param s      with its zero
 /// @param value  of s in the configuration given
@@ -78,6 +82,7 @@ template <class Coordinate>
 void take_laws(MechanismAssembly& assembly, const JointDescription& joint, const std::string& part, const Coordinate& s,
                double value, const AtLock& when = {}) {
   auto& elements = assembly.mechanism.elements;
+  if (joint.rate) take_start_rate(assembly, joint, part, s);
   if (joint.motion) assembly.mechanism.add_drive(joint.name, s, drive_of(assembly, joint, part, s.is_angle(), value));
   if (joint.drive) {
     const std::string text =

@@ -1,6 +1,7 @@
 #include <rubato/integrate/constrained/consistent_start.hpp>
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/kinds/start_on_locks.hpp>
+#include <rubato/integrate/kinds/start_rates.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 
 #include <fmt/format.h>
@@ -37,6 +38,19 @@ void warn_of_velocities(const ConsistentStart& start, const system::Mechanism& m
       mechanism.coordinates()[static_cast<std::size_t>(start.most_changed)], start.velocity_changed,
       unit_of_coordinate(start.most_changed, mechanism), start.energy_lost >= start.drive_work ? "took" : "gave",
       std::abs(start.energy_lost - start.drive_work)));
+}
+
+/// With the velocities that follow from the rates of joints, in the configuration that the joints leave.
+ConsistentStart start_with_rates(system::MechanismEquations& equations, std::vector<std::string>& warnings) {
+  system::State given = equations.mechanism().start();
+  const ConsistentStart placed = make_consistent(equations, given);
+  if (!placed.is_consistent) return placed;
+  given.q = placed.state.q;
+  set_start_rates(equations, given, warnings);
+  ConsistentStart start = make_consistent_on_locks(equations, given);
+  start.position_moved = placed.position_moved;
+  start.most_moved = placed.most_moved;
+  return start;
 }
 
 /// Opens the stops which the velocities of a state lead away from.
@@ -117,7 +131,9 @@ std::string immense_numbers(const system::Mechanism& mechanism) {
 system::State assembled_start(const Location& where, const system::Mechanism& mechanism,
                               std::vector<std::string>& warnings, bool moves) {
   system::MechanismEquations equations(mechanism);
-  const ConsistentStart start = make_consistent_on_locks(equations, mechanism.start());
+  const bool has_rates = moves && !mechanism.model().start_rates.empty();
+  const ConsistentStart start =
+      has_rates ? start_with_rates(equations, warnings) : make_consistent_on_locks(equations, mechanism.start());
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
   if (start.is_assembled && start.worst_rate >= 0) {
     std::vector<std::string> drives;
@@ -167,16 +183,18 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
 system::State set_in_motion(const Location& where, const system::Mechanism& mechanism, system::State at_rest,
                             std::vector<std::string>& warnings) {
   at_rest.v = mechanism.start().v;
+  system::MechanismEquations equations(mechanism);
+  if (!mechanism.model().start_rates.empty()) set_start_rates(equations, at_rest, warnings);
   leave_stops(mechanism, at_rest);
   if (mechanism.model().drives.empty() && at_rest.v.isZero(0.0)) return at_rest;
-  system::MechanismEquations equations(mechanism);
   const auto start = make_consistent(equations, std::move(at_rest));
   if (!start.is_consistent)
     throw InvalidInput(
         where,
         "no velocities and accelerations were found at the equilibrium that the drives and joints allow; "
         "look for a drive that the joints hinder there");
-  if (!mechanism.start().v.isZero(0.0)) warn_of_velocities(start, mechanism, warnings);
+  const bool has_velocities = !mechanism.start().v.isZero(0.0) || !mechanism.model().start_rates.empty();
+  if (has_velocities) warn_of_velocities(start, mechanism, warnings);
   return start.state;
 }
 

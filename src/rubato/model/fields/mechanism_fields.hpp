@@ -221,6 +221,11 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
   if (visit.applies(!is_prismatic))
     visit.quantity("angle", joint.value,
                    {.unit = "rad", .says = "of a revolute joint or a screw in the configuration given", .unless = "0"});
+  visit.quantity("rate", joint.rate,
+                 {.unit = "rad/s or m/s",
+                  .says = "of its angle, displacement or length at the start; bodies whose velocities are not given "
+                          "follow",
+                  .unless = "as its parts move"});
   const bool is_strut = joint.type == Type::strut;
   const bool slides = is_strut || is_prismatic;
   if (visit.applies(slides))
@@ -264,6 +269,7 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
   visit.table_or_tables("lock", joint.locks, {.says = "a limit of the angle or displacement, or a list of them"});
   visit.excludes("drive", "friction");
   visit.excludes("drive", "lock");
+  visit.excludes("drive", "rate");
   std::vector<const char*> with_radius;
   for (const JointKind& kind : joint_kinds())
     if (kind.has_radius_of_friction) with_radius.push_back(kind.name);

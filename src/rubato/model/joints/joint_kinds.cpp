@@ -10,7 +10,7 @@ using Keys = std::vector<const char*>;
 
 /// The keys of what may act on the one coordinate that a joint leaves free.
 Keys with_laws(std::initializer_list<const char*> own) {
-  Keys keys{"damping", "drive", "friction", "lock", "rest", "stiffness"};
+  Keys keys{"damping", "drive", "friction", "lock", "rate", "rest", "stiffness"};
   keys.insert(keys.end(), own);
   return keys;
 }
