@@ -192,6 +192,7 @@ struct ModelDescription {
   StructureDescription structure;
   std::vector<BodyDescription> bodies;
   std::vector<JointDescription> joints;
+  std::vector<BushingDescription> bushings;
   std::vector<SpringDescription> springs;
   std::vector<DamperDescription> dampers;
   DampingDescription damping;

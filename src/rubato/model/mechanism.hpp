@@ -2,6 +2,7 @@
 
 #include <rubato/model/beams/beam_forces.hpp>
 #include <rubato/model/bodies/element.hpp>
+#include <rubato/model/joints/bushing.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/joint_friction.hpp>
 #include <rubato/model/joints/law_element.hpp>
@@ -94,6 +95,7 @@ struct Mechanism {
   std::vector<TurnCounter> turn_counters;
   std::vector<Lock> locks;
   std::vector<StartRate> start_rates;
+  std::vector<Bushing> bushings;
   std::vector<PrescribedMotion> drives;
   std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
   std::vector<MechanismLaw> laws;

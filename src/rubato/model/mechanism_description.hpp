@@ -87,4 +87,16 @@ struct JointDescription {
   Location where;
 };
 
+/// An elastic mount: stiffness and damping in all directions between two parts.
+struct BushingDescription {
+  std::string name;
+  std::array<std::string, 2> between;  ///< nodes, bodies or "ground"
+  std::array<Location, 2> between_where;
+  std::vector<Quantity> at;                  ///< its point, in the configuration given [m]; that of a node unless given
+  std::vector<Quantity> axis;                ///< its x; of the world unless given [-]
+  std::vector<Quantity> rotation;            ///< of its axes in space, a rotation vector [rad]
+  std::vector<Quantity> stiffness, damping;  ///< x, y, rz [3], or x, y, z, rx, ry, rz [6]
+  Location at_where, axis_where, rotation_where, stiffness_where, damping_where, where;
+};
+
 }  // namespace rubato::model

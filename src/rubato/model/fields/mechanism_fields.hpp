@@ -280,4 +280,30 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
                          needed_joint_keys(), fmt::join(with_radius, R"(", ")")));
 }
 
+void fields(auto& visit, Like<BushingDescription> auto& bushing) {
+  visit.numbered_name("bushing", bushing.name, bushing.where, {.says = "of results and messages"});
+  visit.between("between", bushing.between, bushing.between_where,
+                {.required = true, .says = "nodes, bodies or \"ground\"; its axes turn with the first"});
+  visit.quantities("at", bushing.at, {2, 3},
+                   {.unit = "m", .says = "its place, in the configuration given", .unless = "that of its node"});
+  visit.where(bushing.at_where, "at");
+  visit.quantities("axis", bushing.axis, {2, 2},
+                   {.unit = "-", .says = "in the plane: its x", .unless = "x of the world"});
+  visit.where(bushing.axis_where, "axis");
+  visit.quantities("rotation", bushing.rotation, {3, 3},
+                   {.unit = "rad",
+                    .says = "in space: a rotation vector, which turns the axes of the world into its own",
+                    .unless = "none"});
+  visit.where(bushing.rotation_where, "rotation");
+  visit.quantities("stiffness", bushing.stiffness, {3, 6},
+                   {.required = true,
+                    .unit = "N/m and N m/rad",
+                    .says = "along x and y and about z; in space along x, y and z, and about them",
+                    .range = Range::not_negative});
+  visit.where(bushing.stiffness_where, "stiffness");
+  visit.quantities("damping", bushing.damping, {3, 6},
+                   {.unit = "N s/m and N m s/rad", .says = "likewise", .unless = "0", .range = Range::not_negative});
+  visit.where(bushing.damping_where, "damping");
+}
+
 }  // namespace rubato::model

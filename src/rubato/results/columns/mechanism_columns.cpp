@@ -1,4 +1,5 @@
 #include <rubato/results/columns/beam_section_forces.hpp>
+#include <rubato/results/columns/bushing_forces.hpp>
 #include <rubato/results/columns/joint_coordinates.hpp>
 #include <rubato/results/columns/joint_frictions.hpp>
 #include <rubato/results/columns/joint_laws.hpp>
@@ -17,6 +18,7 @@ ColumnGroups columns_of_motion(system::MechanismEquations& equations, const std:
   groups.push_back(std::make_unique<JointReactions>(mechanism));
   groups.push_back(std::make_unique<JointFrictions>(equations));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
+  groups.push_back(std::make_unique<BushingForces>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, true));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, ""));
   return groups;
@@ -31,6 +33,7 @@ ColumnGroups columns_of_equilibrium(system::MechanismEquations& equations, const
   groups.push_back(std::make_unique<JointDisplacements>(mechanism));
   groups.push_back(std::make_unique<JointReactions>(mechanism));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
+  groups.push_back(std::make_unique<BushingForces>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, false));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, title));
   return groups;
