@@ -198,7 +198,7 @@ TEST(ReadMechanism, NamesEveryKeyAndTheTableThatTakesAType) {
             "study.toml:14:3: error: the study has no key \"strutt\"; write [[joint]] with type = \"strut\"");
   EXPECT_EQ(verdict_with("[[joint]]", "[[hinge]]"),
             "study.toml:14:3: error: the study has no key \"hinge\"; write [[joint]] with type = \"revolute\"");
-  EXPECT_NE(verdict_with("[[joint]]", "[[linkage]]").find("gravity, body, joint, bushing, analysis"),
+  EXPECT_NE(verdict_with("[[joint]]", "[[linkage]]").find("gravity, body, joint, gear, bushing, analysis"),
             std::string::npos);
   EXPECT_NE(verdict_with("type = \"prismatic\"", "type = \"slot\"").find("planar, screw, strut"), std::string::npos);
 }

@@ -70,7 +70,7 @@ double reference_of(const MechanismAssembly& assembly) {
 bool is_mechanism(const ModelDescription& description) {
   const auto& beams = description.structure.beams;
   return !description.bodies.empty() || !description.joints.empty() || !description.bushings.empty() ||
-         std::any_of(beams.begin(), beams.end(), [](const BeamDescription& beam) {
+         !description.gears.empty() || std::any_of(beams.begin(), beams.end(), [](const BeamDescription& beam) {
            return beam.formulation == BeamDescription::Formulation::geometrically_exact;
          });
 }
@@ -85,6 +85,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   assembly.start = mechanism.numbers();
   for (const JointDescription& joint : description.joints)
     (assembly.in_plane() ? take_plane_joint : take_space_joint)(assembly, joint);
+  for (const GearDescription& gear : description.gears) take_gear(assembly, gear);
   for (const BushingDescription& bushing : description.bushings) take_bushing(assembly, bushing);
   take_springs(assembly);
   take_local_laws(assembly);

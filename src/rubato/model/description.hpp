@@ -193,6 +193,7 @@ struct ModelDescription {
   std::vector<BodyDescription> bodies;
   std::vector<JointDescription> joints;
   std::vector<BushingDescription> bushings;
+  std::vector<GearDescription> gears;
   std::vector<SpringDescription> springs;
   std::vector<DamperDescription> dampers;
   DampingDescription damping;

@@ -75,6 +75,7 @@ void take_structure(MechanismAssembly& assembly);
 void take_body(MechanismAssembly& assembly, const BodyDescription& body);
 void take_plane_joint(MechanismAssembly& assembly, const JointDescription& joint);
 void take_space_joint(MechanismAssembly& assembly, const JointDescription& joint);
+void take_gear(MechanismAssembly& assembly, const GearDescription& gear);
 void take_bushing(MechanismAssembly& assembly, const BushingDescription& bushing);
 void take_springs(MechanismAssembly& assembly);
 void take_local_laws(MechanismAssembly& assembly);

@@ -99,4 +99,13 @@ struct BushingDescription {
   Location at_where, axis_where, rotation_where, stiffness_where, damping_where, where;
 };
 
+/// A ratio between the coordinates of two joints: first = ratio second + what it is at the start.
+struct GearDescription {
+  std::string name;
+  std::array<std::string, 2> joints;
+  std::array<Location, 2> joints_where;
+  Quantity ratio;  ///< [-], [m] or [1/m]
+  Location where;
+};
+
 }  // namespace rubato::model

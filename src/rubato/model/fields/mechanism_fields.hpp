@@ -280,6 +280,16 @@ void fields(auto& visit, Like<JointDescription> auto& joint) {
                          needed_joint_keys(), fmt::join(with_radius, R"(", ")")));
 }
 
+void fields(auto& visit, Like<GearDescription> auto& gear) {
+  visit.numbered_name("gear", gear.name, gear.where, {.says = "of results and messages"});
+  visit.between(
+      "joints", gear.joints, gear.joints_where,
+      {.required = true, .says = "which leave one coordinate free each: the first moves ratio times the second"});
+  visit.quantity(
+      "ratio", gear.ratio,
+      {.required = true, .unit = "-, m or 1/m", .says = "negative: against it; of a rack, in m, the radius"});
+}
+
 void fields(auto& visit, Like<BushingDescription> auto& bushing) {
   visit.numbered_name("bushing", bushing.name, bushing.where, {.says = "of results and messages"});
   visit.between("between", bushing.between, bushing.between_where,

@@ -42,6 +42,7 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.table("gravity", model.gravity, {.says = "acts on elements and masses of nodes"});
   visit.tables("body", model.bodies, "a rigid body; makes the model a mechanism");
   visit.tables("joint", model.joints, "joins two nodes or bodies, or one and the ground; makes the model a mechanism");
+  visit.tables("gear", model.gears, "a ratio between the angles or displacements of two joints");
   visit.tables("bushing", model.bushings,
                "stiffness and damping in all directions between two bodies, or one and the ground; makes the model a "
                "mechanism");

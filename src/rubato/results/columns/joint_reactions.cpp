@@ -22,7 +22,8 @@ JointReactions::JointReactions(const system::Mechanism& mechanism) : mechanism_(
     for (const std::string& name : joint->row_names()) {
       const Index place = row++;
       if (is_friction(name)) continue;
-      if (mechanism.model().dimension == 3 && !is_drive(name) && !name.starts_with("lock")) continue;
+      if (mechanism.model().dimension == 3 && !is_drive(name) && !name.starts_with("lock") && !name.starts_with("gear"))
+        continue;
       auto found = std::find_if(rows_.begin(), rows_.end(), [&](const Rows& r) { return r.name == name; });
       if (found == rows_.end()) found = rows_.insert(found, Rows{name, {}, {}, name == "tension" ? 1.0 : -1.0});
       if (!found->joints.empty() && found->joints.back() == joint->name()) {  // several locks of one joint
