@@ -96,8 +96,8 @@ void fields(auto& visit, Like<LockDescription> auto& lock) {
   visit.word(
       "kind", lock.is_latch, {{"stop", false}, {"latch", true}},
       {.required = true, .says = "a stop holds from one side and lets go; a latch holds for good and ends the drive"});
-  using Side = LockDescription::Side;
-  visit.word("side", lock.side, {{"below", Side::below}, {"above", Side::above}},
+  using LockSide = LockDescription::Side;
+  visit.word("side", lock.side, {{"below", LockSide::below}, {"above", LockSide::above}},
              {.says = "which values are free; needed by a joint that starts at its lock", .unless = "where it starts"});
   visit.quantity("stiffness", lock.stiffness, {.unit = "N m/rad or N/m", .unless = "rigid", .range = Range::positive});
   visit.quantity("damping", lock.damping, {.unit = "N m s/rad or N s/m", .says = "goes with a stiffness"});
