@@ -194,7 +194,9 @@ class Marcher {
   /// @param weight  of the step
   bool crawls(double step, double weight) {
     constexpr double share = 1e4;  // of the resolution, 1e-12 of the run
+    constexpr double deep = 1e-2;  // at so small a part of that nobody gets anywhere
     const double nothing = share * timeline_.resolution();
+    if (step < deep * nothing) weight = 1.0;
     crawling_ = step < nothing && plan_.largest > 100.0 * nothing ? crawling_ + weight : 0.0;
     return crawling_ > 2000.0;
   }
