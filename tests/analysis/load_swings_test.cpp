@@ -21,7 +21,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double pi = std::numbers::pi;
 
@@ -143,7 +143,7 @@ TEST(FormulaThatSwings, IsToldWhereEqualStepsPassOverIt) {
       run(oscillator(100.0, sine), 10.0, "0.1").report.warnings,
       Contains(HasSubstr("the formula \"1000*sin(2*pi*5*t)\" swings faster than steps of 0.1 s can follow; take "
                          "0.03")));
-  EXPECT_THAT(run(oscillator(100.0, sine), 10.0, "0.04").report.warnings, IsEmpty());
+  EXPECT_THAT(run(oscillator(100.0, sine), 10.0, "0.04").report.warnings, Not(Contains(HasSubstr("swings"))));
   const std::string harmonic = "force = [{ on = \"m\", amplitude = 1.0, frequency = 5.0 }]\n";
   EXPECT_THAT(run(oscillator(100.0, harmonic), 10.0, "0.1").report.warnings,
               Contains(HasSubstr("the harmonic load of 31.4159 rad/s swings faster than steps of 0.1 s can follow")));
@@ -160,7 +160,8 @@ TEST(FormulaThatSwings, IsToldWhereItCannotBeFollowed) {
     EXPECT_THAT(run(oscillator(100.0, load), 10.0).report.warnings,
                 Contains(HasSubstr("the formula \"" + text + "\" swings or switches too often")))
         << text;
-    EXPECT_THAT(run(oscillator(100.0, load), 1.0, "{ tolerance = 1e-3, largest = 1e-3 }").report.warnings, IsEmpty());
+    EXPECT_THAT(run(oscillator(100.0, load), 1.0, "{ tolerance = 1e-3, largest = 1e-3 }").report.warnings,
+                Not(Contains(HasSubstr("swings"))));
   }
 }
 

@@ -65,13 +65,13 @@ TEST(SmallMotion, IsMeasuredByItself) {
 TEST(SmallMotion, IsToldWhereItIsTiny) {
   constexpr double force = 5e-5;
   const testing::MechanismStudy small(block(force, 1e-3), 0);
-  ASSERT_EQ(small.report.warnings.size(), 1u);
+  ASSERT_FALSE(small.report.warnings.empty());
   EXPECT_THAT(small.report.warnings.front(), ::testing::HasSubstr("take tolerance = "));
   const std::string& told = small.report.warnings.front();
   const double tolerance = std::stod(told.substr(told.find("take tolerance = ") + 17));
   EXPECT_LT(tolerance, 1e-4);
   const testing::MechanismStudy again(block(force, tolerance), 0);
-  EXPECT_TRUE(again.report.warnings.empty());
+  EXPECT_TRUE(again.report.warnings.empty()) << again.report.warnings.front();
   EXPECT_LT(error_of(again, force), 1e-2);
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rubato::analysis {
@@ -44,9 +45,10 @@ std::string warning_of_residue(const TransientRecorder& recorder, const Transien
                                const integrate::Events& events) {
   const bool sums_well = integrate::find_method(plan.march.method.name).order <= 2;
   if (!recorder.residue() || !(sums_well || recorder.residue()->is_closed())) return "";
+  constexpr double least = 1e-5;  // of the largest energy; less is nothing to worry about
   if (plan.march.automatic && plan.march.step == 0.0)
     return recorder.residue()->warning(
-        10.0 * plan.march.automatic->tolerance, round_off, events,
+        std::max(least, 10.0 * plan.march.automatic->tolerance), round_off, events,
         fmt::format("take a smaller tolerance than {}", plan.march.automatic->tolerance));
   return recorder.residue()->warning(
       1e-3, round_off, events,
@@ -92,13 +94,14 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
     const integrate::Events events = march->events();
     write_events(name, events, context.sink);
     if (const std::string warning = warning_of(events); !warning.empty()) run.warnings.push_back(warning);
-    if (const std::string warning = warning_of_residue(recorder, plan, march->energy_round_off(), events);
-        !warning.empty())
-      run.warnings.push_back(warning);
   }
   const integrate::MarchNotes notes = march->notes(report);
   run.statistics.insert(run.statistics.end(), notes.statistics.begin(), notes.statistics.end());
   run.warnings.insert(run.warnings.end(), notes.warnings.begin(), notes.warnings.end());
+  if (has_begun)
+    if (const std::string warning = warning_of_residue(recorder, plan, march->energy_round_off(), march->events());
+        !warning.empty())
+      run.warnings.push_back(warning);
   run.findings.insert(run.findings.end(), notes.findings.begin(), notes.findings.end());
   if (notes.known > 0.0) report_events(march->events(), notes.known, run.findings);
   if (report.march.end == integrate::MarchEnd::failed) {
