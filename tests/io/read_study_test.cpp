@@ -143,12 +143,13 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
   EXPECT_EQ(
       verdict_with("title", "titel"),
       "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
-      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "title, parameters, coordinate, matrices, model, spring, damper, damping, slider, stop, bouc_wen, "
+      "nonlinear_spring, "
       "contact, "
       "force, "
       "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
-      "joint, analysis)");
+      "joint, gear, bushing, analysis)");
 }
 
 TEST(KeyError, PointsAtTheMisspellingOfARequiredKey) {
@@ -167,12 +168,13 @@ TEST(KeyError, NamesAnUnknownTable) {
   EXPECT_EQ(
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
-      "title, parameters, coordinate, matrices, spring, damper, damping, slider, stop, bouc_wen, nonlinear_spring, "
+      "title, parameters, coordinate, matrices, model, spring, damper, damping, slider, stop, bouc_wen, "
+      "nonlinear_spring, "
       "contact, "
       "force, "
       "distributed_force, "
       "displacement, base_motion, node, material, section, beam, truss, nodes, beams, mass, support, gravity, body, "
-      "joint, analysis)");
+      "joint, gear, bushing, analysis)");
 }
 
 TEST(KeyError, NamesAMissingKeyAtItsTable) {

@@ -80,7 +80,7 @@ inline LockingBars locking_bars(LockingLaw law, int elements = 4) {
     lock.at = std::numbers::pi;
     lock.stiffness = law == LockingLaw::rigid_latch ? 0.0 : 1e7;
     const int index = m.add_lock(lock);
-    if (lock.is_latch) drive = {index, false};
+    if (lock.is_latch) drive = {index, 1, false};
   }
   m.elements.push_back(model::make_joint_drive(
       "B", bars.angle, law == LockingLaw::formula ? "2000 - 1e7*max(0, angle - pi)" : "2000", {}, drive));

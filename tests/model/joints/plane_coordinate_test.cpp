@@ -81,8 +81,8 @@ TEST(CoordinateTables, KnowTheirPotential) {
 TEST(PlaneCoordinates, PushOnlyInThePhaseOfTheirLock) {
   const PlaneCoordinate s = coordinate(PlaneCoordinate::Kind::angle);
   RandomMotion at(2, 3);
-  const auto engaged = model::make_joint_spring("k", s, 3.0, 0.1, {0, true});
-  const auto open = model::make_joint_drive("f", s, "2", {}, {0, false});
+  const auto engaged = model::make_joint_spring("k", s, 3.0, 0.1, {0, 1, true});
+  const auto open = model::make_joint_drive("f", s, "2", {}, {0, 1, false});
   double force[6];
   engaged->force(at.motion(), force);
   EXPECT_EQ(force[5], 0.0);
