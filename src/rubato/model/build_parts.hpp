@@ -2,10 +2,11 @@
 
 #include <rubato/model/description.hpp>
 #include <rubato/model/model.hpp>
+#include <rubato/model/places.hpp>
 
 #include <string>
 
-// Private to the model floor: the parts of build() that look up no names.
+// Private to the model floor: the parts of build().
 namespace rubato::model {
 
 /// @param part  "the force on \"blade1\"", for messages
@@ -34,14 +35,9 @@ std::string contact_at(const Model& model, Index coordinate);
 NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
                                const Model& model, const numerics::Parameters& parameters, const std::string& part);
 
-/// What knows the coordinates of a model by their names.
-class Places {
- public:
-  virtual ~Places() = default;
-  /// Ground of what a support holds. Throws InvalidInput for a name that is no coordinate.
-  /// @param role  "slider \"contact1\" joins"
-  virtual Index end_of(const std::string& name, const Location& where, const std::string& role) const = 0;
-};
+/// Adds sliders, stops, laws and contacts to a model that has all of its coordinates. Throws InvalidInput.
+void build_laws(const ModelDescription& description, const numerics::Parameters& parameters, NegativeLoad negative_load,
+                const Places& places, Model& model);
 
 /// A contact as a law of several numbers. Throws InvalidInput.
 BlockBetween build_contact(const ContactDescription& description, const Model& model, const Places& places,
