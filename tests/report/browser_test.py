@@ -143,6 +143,16 @@ class Report(unittest.TestCase):
             [...tools.querySelectorAll('button')].find((button) => button.textContent === arguments[1]).click()""",
                             number, text)
 
+    def test_a_law_beside_sliders_and_stops_has_its_loop_over_what_it_sees(self):
+        number = self.figure("response", "Hysteresis loop of rubber.")  # its force is law_force in results.nc
+        self.assertEqual(self.titles(number), ["Displacement [m]", "Law force [N]"])
+
+    def test_forces_of_bushings_have_a_figure(self):
+        number = self.figure("pendulum", "What each bushing does")
+        self.assertEqual(self.titles(number), ["Force x [N]", "Time [s]"])
+        self.choose(number, "Moment")
+        self.browser.wait(f"return document.querySelector('#figure-{number} .ytitle')?.textContent === 'Moment [N m]'")
+
     def test_steps_stand_on_logarithmic_axes_with_their_events_and_their_distribution(self):
         axis = "return document.querySelector('#figure-{} .plot')._fullLayout.{}.type"
         number = self.figure("response", "Length of the steps")

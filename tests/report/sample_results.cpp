@@ -130,11 +130,13 @@ void add_transient(results::Sink& sink, const std::string& name, const SmallMode
   layout.blocks.push_back(column("slip", "m", "slider", model.sliders));
   layout.blocks.push_back(column("force", "N", "stop", {"bumper"}));
   layout.blocks.push_back(column("penetration", "m", "stop", {"bumper"}));
+  layout.blocks.push_back(column("force", "N", "law", {"rubber"}));
+  layout.blocks.push_back(column("displacement", "m", "law", {"rubber"}));
   Rows rows, energies;
   march(model, h, steps, rows, energies);
   for (auto& row : rows) {
     const double penetration = std::max(0.0, row[1]);  // of the first coordinate
-    row.insert(row.end(), {100.0 * penetration, penetration});
+    row.insert(row.end(), {100.0 * penetration, penetration, 10.0 * row[1], row[1]});
   }
   add_table(sink, layout, rows);
   add_table(sink, energy_layout(name), energies);

@@ -107,12 +107,16 @@ void add_mechanism(results::Sink& sink) {
   motion.blocks.push_back({"reaction_x", "N", "", "reaction_x_joint", {"hinge pin"}});
   motion.blocks.push_back({"reaction_y", "N", "", "reaction_y_joint", {"hinge pin"}});
   motion.blocks.push_back({"law_moment", "N m", "", "law_moment_joint", {"hinge pin"}});
+  motion.blocks.push_back({"force_x", "N", "", "bushing", {"mount"}});
+  motion.blocks.push_back({"force_y", "N", "", "bushing", {"mount"}});
+  motion.blocks.push_back({"moment", "N m", "", "bushing", {"mount"}});
   std::vector<std::vector<double>> rows;
   const double pi = std::numbers::pi, largest = 0.5 * pi;
   for (int i = 0; i <= 100; ++i) {
     const double t = 1e-4 * i * i, angle = -largest * std::sin(pi * t), rate = -largest * pi * std::cos(pi * t);
     const double c = 0.5 * std::cos(angle), s = 0.5 * std::sin(angle), pull = rate * rate;  // of 1 kg
-    rows.push_back({t, c, s, 0.0, -s * rate, c * rate, 0.0, angle, angle, rate, rate, -c * pull, -s * pull, 3.0 * t});
+    rows.push_back(
+        {t, c, s, 0.0, -s * rate, c * rate, 0.0, angle, angle, rate, rate, -c * pull, -s * pull, 3.0 * t, c, s, angle});
   }
   add_table(sink, motion, rows);
   const std::vector<std::string> nodes{"arm", "arm:1", "arm:3", "ground:4"};

@@ -109,10 +109,15 @@ function limit_lines(table, force, label, values) {
            line: {color: "#6c7680", width: 1, dash: "dash"}, hoverinfo: "name", showlegend: true}];
 }
 
+/** Whether a column is one of these quantities: where sliders or stops have it as well, it is `law_force` in results.nc. */
+function is_quantity(variable, names) {
+  return names.some((name) => [name, `${variable.dimension}_${name}`].includes(variable.name));
+}
+
 /** What a law sees, first less second. */
 function law_displacement(table, force, label) {
   const seen = table.variables.map((variable, index) => ({...variable, index}))
-    .find((variable) => variable.dimension === force.dimension && ["displacement", "angle"].includes(variable.name));
+    .find((variable) => variable.dimension === force.dimension && is_quantity(variable, ["displacement", "angle"]));
   return {title: axis_label(seen), values: columns_of(table, 1)[seen.index][label]};
 }
 
@@ -183,11 +188,13 @@ function write_transient(chapter, analysis) {
   const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
   const is_of_laws = (variable) => ["law", "rotational_law"].includes(variable.dimension);
   const is_of_joints = (variable) => variable.dimension.endsWith("joint");
+  const is_of_bushings = (variable) => variable.dimension === "bushing";
   const of = (names) => names.map((name) => variable_of(table, name))
-    .filter((variable) => variable && variable.labels.length && !is_of_stops(variable) && !is_of_laws(variable) && !is_of_joints(variable));
+    .filter((variable) => variable && variable.labels.length &&
+      ![is_of_stops, is_of_laws, is_of_joints, is_of_bushings].some((belongs) => belongs(variable)));
   const those = (belongs) => table.variables.map((variable, index) => ({...variable, index}))
     .filter((variable) => variable.labels.length && belongs(variable));
-  const stops = those(is_of_stops), laws = those(is_of_laws), joints = those(is_of_joints);
+  const stops = those(is_of_stops), laws = those(is_of_laws), joints = those(is_of_joints), bushings = those(is_of_bushings);
   const is_reaction = (variable) => variable.name.startsWith("reaction_");
   const sliding = joints.filter((variable) => variable.dimension === "sliding_joint");
   const reactions = joints.filter(is_reaction);
@@ -219,6 +226,9 @@ function write_transient(chapter, analysis) {
   if (efforts.length) {
     add_section(chapter, "Laws, friction and drives of joints", history_figure(table, efforts, "Forces and moments of laws, friction and drives"));
   }
+  if (bushings.length) {
+    add_section(chapter, "Bushings", history_figure(table, bushings, "What each bushing does to its second part, by its own axes"));
+  }
   if (sliders.length) {
     add_section(chapter, "Sliders", history_figure(table, sliders, "Sliders: force and slip"));
     const [force] = of(["force"]);
@@ -231,8 +241,8 @@ function write_transient(chapter, analysis) {
   if (stops.length) add_section(chapter, "Stops", history_figure(table, stops, "Stops: force and penetration"));
   if (laws.length) {
     add_section(chapter, "Laws", history_figure(table, laws, "Laws: force, displacement and what they dissipated"));
-    for (const force of laws.filter((variable) => ["force", "moment"].includes(variable.name))) {
-      add_section(chapter, force.name === "force" ? "Forces over displacements" : "Moments over angles",
+    for (const force of laws.filter((variable) => is_quantity(variable, ["force", "moment"]))) {
+      add_section(chapter, is_quantity(force, ["force"]) ? "Forces over displacements" : "Moments over angles",
                   hysteresis_loops(table, force, law_displacement, "laws"));
     }
   }
