@@ -37,6 +37,8 @@ PICTURES = {
                      "responses": "response beside"},
     "building": {"motion": MOTION},
     "isolated-building": {"loop": "Hysteresis loop of bearings"},
+    "machine-mounts": {"motion": MOTION, "loop": "Hysteresis loop of mounts"},
+    "machine-mounts-running": {"frf": (RESPONSES, 1, {"Scale": "Logarithmic"})},
     "two-supports": {"motion": MOTION},
     "late-stop": {"motion": MOTION},
     "frame": {"motion": MOTION},
