@@ -75,6 +75,7 @@ TEST(MechanismMessages, CallEventsInTheTableAsTheCommandDoes) {
   ASSERT_EQ(events.rows.size(), 2u);
   EXPECT_EQ(events.rows[0][2], 1.0);
   EXPECT_EQ(events.rows[1][2], 0.0);
+  EXPECT_EQ(events.rows[0].size(), 4u);  // the column `lock` is for joints with several
   ASSERT_EQ(ran.report.findings.size(), 2u);
   EXPECT_THAT(ran.report.findings[0], HasSubstr("\"rail\" locks at t = 0.1 s"));
   EXPECT_THAT(ran.report.findings[0], Not(HasSubstr("J")));  // its spring takes the energy, and gives it back

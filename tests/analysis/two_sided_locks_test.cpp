@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -55,6 +56,7 @@ TEST_P(TwoSidedLocks, ThrowABlockToAndFroWithItsEnergy) {
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(ran.at(i, "run.events", "time"), t, 2e-6) << i;
     t += i % 2 == 0 ? touches : crosses;
+    EXPECT_EQ(ran.at(i, "run.events", "lock"), i % 4 < 2 ? 2.0 : 1.0) << i;  // up first: the second of the two
   }
   EXPECT_NEAR(ran.last("run.energy", "kinetic"), 0.5 * mass * speed * speed, 1e-5);
   const double least = -down + speed / std::sqrt(stiffness / mass);
@@ -62,6 +64,35 @@ TEST_P(TwoSidedLocks, ThrowABlockToAndFroWithItsEnergy) {
   for (std::size_t row = 0; row < ran.table("run").rows.size(); ++row)
     lowest = std::min(lowest, ran.at(row, "run", "displacement", "guide"));
   EXPECT_NEAR(lowest, -least, 1e-5);
+}
+
+// A block that goes to and fro for ten seconds changes each lock more than six times.
+TEST_P(TwoSidedLocks, AreToldByTheirPlaceAndNotWithoutEnd) {
+  const MechanismStudy ran(block_in_guide(GetParam(), 0.3,
+                                          "lock = [{ at = -0.25, kind = \"stop\", stiffness = 8e4 }, "
+                                          "{ at = 0.4, kind = \"stop\", stiffness = 8e4 }]",
+                                          1.5) +
+                           transient("0.001", 10.0));
+  expect_done(ran);
+  const auto of = [&](const char* words) {
+    return std::count_if(ran.report.findings.begin(), ran.report.findings.end(),
+                         [&](const std::string& finding) { return finding.find(words) != std::string::npos; });
+  };
+  EXPECT_EQ(of(" s, at lock(1)"), 6);
+  EXPECT_EQ(of(" s, at lock(2)"), 6);
+  const auto rows = ran.table("run.events").rows.size();
+  EXPECT_GT(rows, 24u);
+  long told = 0;
+  for (const int lock : {1, 2}) {
+    long changes = 0;
+    for (std::size_t i = 0; i < rows; ++i) changes += ran.at(i, "run.events", "lock") == lock ? 1 : 0;
+    EXPECT_EQ(of(("\"guide\" locks and lets go " + std::to_string(changes) + " times in all, at lock(" +
+                  std::to_string(lock) + ")")
+                     .c_str()),
+              1);
+    told += changes;
+  }
+  EXPECT_EQ(told, static_cast<long>(rows));
 }
 
 // Pushed by 6 N against one rigid stop, from 1 s on against the other: each takes what the force gave on the way.

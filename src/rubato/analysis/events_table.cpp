@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace rubato::analysis {
 namespace {
@@ -20,6 +21,12 @@ std::string energy_told(const integrate::Event& event) {
   if (!(event.energy_lost > 0.0)) return {};
   if (event.change == Change::locks) return fmt::format(", taking {:.4g} J", event.energy_lost);
   return fmt::format(", with {:.4g} J still in its spring, which its damper takes", event.energy_lost);
+}
+
+/// Which lock of its joint a part is, where it has several.
+std::string lock_told(const integrate::Events& events, std::size_t part) {
+  const int place = events.place_of(part);
+  return place > 0 ? fmt::format(", at lock({})", place) : "";
 }
 
 /// A time to one digit more than is known of it. What happens soon has three digits at least.
@@ -50,11 +57,14 @@ void write_events(const std::string& name, const integrate::Events& events, resu
     layout.blocks[2].categories.insert(layout.blocks[2].categories.end(), {"opens", "closes"});
     layout.attributes.emplace_back("of", "contacts");
   }
+  const bool has_places = !events.places.empty();
+  if (has_places)
+    layout.blocks.push_back(scalar("lock", "1", "which of the joint's several locks, as the study lists them; else 0"));
   const auto rows = sink.open(layout);
   for (const auto& event : events.all) {
-    const std::array<double, 4> row{event.t, static_cast<double>(event.part), static_cast<double>(event.change),
-                                    event.energy_lost};
-    rows->append(row);
+    const std::array<double, 5> row{event.t, static_cast<double>(event.part), static_cast<double>(event.change),
+                                    event.energy_lost, static_cast<double>(events.place_of(event.part))};
+    rows->append(std::span(row).first(has_places ? 5 : 4));
   }
 }
 
@@ -67,17 +77,21 @@ std::string warning_of(const integrate::Events& events) {
 void report_events(const integrate::Events& events, double known, std::vector<std::string>& findings) {
   constexpr long most_told = 6;
   std::vector<long> changes(events.parts.size(), 0);
+  std::vector<bool> is_of_lock(events.parts.size(), false);
   for (std::size_t i = events.at_start; i < events.all.size(); ++i) {
     const integrate::Event& event = events.all[i];
     const bool is_lock = event.change == Change::locks || event.change == Change::lets_go;
-    if (is_lock || ++changes[event.part] <= most_told)
-      findings.push_back(fmt::format("\"{}\" {} at t = {} s{}", events.parts[event.part],
+    is_of_lock[event.part] = is_lock;
+    if (++changes[event.part] <= most_told)
+      findings.push_back(fmt::format("\"{}\" {} at t = {} s{}{}", events.parts[event.part],
                                      integrate::name_of(event.change), told_time(event.t, known),
-                                     is_lock ? energy_told(event) : ""));
+                                     lock_told(events, event.part), is_lock ? energy_told(event) : ""));
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
     if (changes[i] > most_told)
-      findings.push_back(fmt::format("\"{}\" sticks and slips {} times in all", events.parts[i], changes[i]));
+      findings.push_back(fmt::format("\"{}\" {} {} times in all{}", events.parts[i],
+                                     is_of_lock[i] ? "locks and lets go" : "sticks and slips", changes[i],
+                                     lock_told(events, i)));
 }
 
 }  // namespace rubato::analysis

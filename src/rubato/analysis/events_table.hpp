@@ -15,7 +15,7 @@ void write_events(const std::string& name, const integrate::Events& events, resu
 /// That the table lacks some; empty: it does not.
 std::string warning_of(const integrate::Events& events);
 
-/// Locks one by one; friction, which may stick and slip often, by its first changes and their number.
+/// The first changes of each part, and the number of all where there are more.
 /// @param known  of their times [s]
 void report_events(const integrate::Events& events, double known, std::vector<std::string>& findings);
 

@@ -24,10 +24,14 @@ struct Events {
   static constexpr std::size_t most = 100'000;
 
   std::vector<std::string> parts;  ///< names of all that can change
-  bool are_of_contacts = false;    ///< sliders and stops of a structure, else of joints
+  std::vector<int> places;  ///< of each part which of its joint's several locks it is, from 1; else 0; may be empty
+  bool are_of_contacts = false;  ///< sliders and stops of a structure, else of joints
   std::vector<Event> all;
   std::size_t at_start = 0;  ///< the first so many tell how the march begins: nothing changed then
   long left_out = 0;         ///< further changes, which are counted only
+
+  /// Which of the several locks of its joint a part is, from 1; 0 where there are not several.
+  int place_of(std::size_t part) const { return places.empty() ? 0 : places[part]; }
 
   void add(const Event& event) {
     if (all.size() < most)

@@ -22,29 +22,30 @@ const contacts_of_events = {one: "Contact", all: "contacts", nothing: "no slider
                             lost: " Energy lost: what the spring of a damped stop still held as it let go."};
 const parts_of_events = (table) => table.attributes.of === "contacts" ? contacts_of_events : joints_of_events;
 
-/** The events of an analysis in the order of time: {time, joint, event, kind, energy}. */
+/** The events of an analysis in the order of time: {time, joint, part, event, kind, energy}; the part of a joint with several locks is one of them. */
 function events_of(analysis) {
   const table = analysis.tables.find(is_of_events);
   if (!table || table.rows === 0) return [];
-  const columns = columns_of(table, 1), [joint, event, energy] = ["joint", "event", "energy_lost"].map((name) => variable_of(table, name));
+  const columns = columns_of(table, 1), [joint, event, energy, lock] = ["joint", "event", "energy_lost", "lock"].map((name) => variable_of(table, name));
   const cell = (variable, row) => columns[variable.index][0][row];
   const limits = new Map((analysis.scene?.joints.names ?? []).map((name, place) => [name, analysis.scene.joints.limits[place]]));
   return columns[0][0].map((time, row) => {
     const [name, word] = [joint, event].map((variable) => variable.categories[cell(variable, row)]);
     const kind = word === "locks" ? {stop: "stops", latch: "latches"}[limits.get(name)] ?? "locks" : word;
-    return {time, joint: name, event: word, kind, energy: energy ? cell(energy, row) : null};
+    const part = lock && cell(lock, row) > 0 ? `${name}, lock(${cell(lock, row)})` : name;
+    return {time, joint: name, part, event: word, kind, energy: energy ? cell(energy, row) : null};
   });
 }
 
 /** The joints whose lock holds at a time. */
 function held_joints(events, time) {
-  const held = new Set();
-  for (const {time: when, joint, event} of events) {
+  const held = new Map();
+  for (const {time: when, joint, part, event} of events) {
     if (when > time) break;
-    if (event === "locks") held.add(joint);
-    if (event === "lets_go") held.delete(joint);
+    if (event === "locks") held.set(part, joint);
+    if (event === "lets_go") held.delete(part);
   }
-  return held;
+  return new Set(held.values());
 }
 
 /** Marks of events, a trace a kind, at most so many of it; where(event): {x, y}. From the height `low`, if given, lines lead up. */
@@ -60,7 +61,7 @@ function event_traces(events, where, low = null) {
       type: "scatter", mode: "lines", x: x.flatMap((at) => [at, at, null]), y: y.flatMap((high) => [low, high, null]), legendgroup: kind,
       line: {color, width: 1, dash: "dot"}, hoverinfo: "skip", showlegend: false,
     }];
-    return [...lines, {type: "scatter", mode: "markers", x, y, name: `${text}${some}`, text: shown.map((event) => plot_text(event.joint)), legendgroup: kind,
+    return [...lines, {type: "scatter", mode: "markers", x, y, name: `${text}${some}`, text: shown.map((event) => plot_text(event.part)), legendgroup: kind,
                        marker: {symbol, color, size: 9, line: {color, width: 1.4}}, showlegend: true,
                        hovertemplate: `%{text}: ${text.toLowerCase()} at %{x:.9~g} s<extra></extra>`}];
   });
@@ -68,13 +69,13 @@ function event_traces(events, where, low = null) {
 
 /** When which part did what, over the time of the run. */
 function events_figure(events, range, parts) {
-  const joints = [...new Set(events.map(({joint}) => joint))];
+  const names = [...new Set(events.map(({part}) => part))];
   return make_figure({
-    caption: `Events of the ${parts.all} over time: ${count_text(events.length)} in all.`, height: Math.min(600, 150 + 28 * joints.length),
+    caption: `Events of the ${parts.all} over time: ${count_text(events.length)} in all.`, height: Math.min(600, 150 + 28 * names.length),
     draw: () => ({
-      traces: event_traces(events, ({time, joint}) => ({x: time, y: plot_text(joint)})),
+      traces: event_traces(events, ({time, part}) => ({x: time, y: plot_text(part)})),
       layout: {xaxis: axis("Time [s]", {range}), yaxis: axis(`${parts.one} [–]`, {
-        type: "category", categoryarray: joints.map(plot_text).reverse(), range: [-0.6, joints.length - 0.4], dtick: 1, tick0: 0,
+        type: "category", categoryarray: names.map(plot_text).reverse(), range: [-0.6, names.length - 0.4], dtick: 1, tick0: 0,
       })},
     }),
   });
@@ -87,12 +88,12 @@ function events_table(events, parts) {
     return make_table({
       caption: `Events of the ${parts.all}.${parts.lost}`,
       columns: [{title: "Time [s]"}, {title: parts.one, is_text: true}, {title: "Event", is_text: true}, {title: "Energy lost [J]"}],
-      rows: events.map(({time, joint, kind, energy}) => [number_node(time, 9), joint, event_kinds[kind]?.text ?? kind, joule(energy)]),
+      rows: events.map(({time, part, kind, energy}) => [number_node(time, 9), part, event_kinds[kind]?.text ?? kind, joule(energy)]),
     });
   }
   const groups = new Map();
   for (const event of events) {
-    const key = JSON.stringify([event.joint, event.kind]);
+    const key = JSON.stringify([event.part, event.kind]);
     if (!groups.has(key)) groups.set(key, []);
     groups.get(key).push(event);
   }
@@ -101,7 +102,7 @@ function events_table(events, parts) {
     columns: [{title: parts.one, is_text: true}, {title: "Event", is_text: true}, {title: "Number"}, {title: "First [s]"}, {title: "Last [s]"},
               {title: "Energy lost [J]"}],
     rows: [...groups.values()].map((group) => [
-      group[0].joint, event_kinds[group[0].kind]?.text ?? group[0].kind, count_text(group.length), number_node(group[0].time, 7),
+      group[0].part, event_kinds[group[0].kind]?.text ?? group[0].kind, count_text(group.length), number_node(group[0].time, 7),
       number_node(group.at(-1).time, 7), joule(group.reduce((sum, {energy}) => sum + (energy ?? 0), 0)),
     ]),
   });
