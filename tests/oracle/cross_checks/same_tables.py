@@ -100,6 +100,8 @@ def _table(one, other, kind, allowed, stiffness, least_work, unlike):
         sizes[slip] = max(sizes.get(slip, 0.0), sizes.get(place, 0.0))
     for key in [k for k in sizes if k.endswith("[N m]")]:
         sizes[key] = max(sizes[key], least_work)
+    for key in [k for k in sizes if k.endswith("[N]")]:  # round-off of the others
+        sizes[key] = max(sizes[key], 1e-9 * max(size for k, size in sizes.items() if k.endswith("[N]")))
     sizes["[J]"] = max(sizes.get("[J]", 0.0), least_work)
     _floors(numbers, sizes)
     for head, (kind_of, a, b) in numbers.items():
@@ -112,6 +114,8 @@ def _table(one, other, kind, allowed, stiffness, least_work, unlike):
             limit = 30 * allowed  # also that of fast parts, which errors of displacements hardly see
         elif "acceleration [" in head and kind == "transient":
             limit = 30 * allowed if allowed < 1e-6 else max(100 * allowed, 0.1)
+        elif ".friction_" in head and kind == "transient":
+            limit = 10 * allowed  # what sticks carries is a multiplier of the step
         elif "dissipated" in head or head == "viscous_work [J]":
             limit = max(allowed, 1e-4)  # sums over steps, by two formulas
             if head in TOGETHER and other.has("law_dissipated [J]") and one.has("slider_dissipated [J]"):

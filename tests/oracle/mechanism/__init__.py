@@ -16,13 +16,14 @@ from mechanism.joints import GROUND, Joints
 from mechanism.kinematics import Kinematics, State, moved
 from mechanism.laws import Laws
 from mechanism.local_laws import ReadsLocalLaws
+from mechanism.mounts import Mounts
 from mechanism.parts import Parts
 from study import Unreadable as Refused
 
 __all__ = ["GROUND", "Mechanism", "Refused", "State", "moved"]
 
 
-class Mechanism(Parts, Joints, Kinematics, Laws, ReadsLocalLaws, Beams):
+class Mechanism(Parts, Joints, Mounts, Kinematics, Laws, ReadsLocalLaws, Beams):
     """The mechanism of a `Study`."""
 
     def __init__(self, source):
@@ -39,7 +40,7 @@ class Mechanism(Parts, Joints, Kinematics, Laws, ReadsLocalLaws, Beams):
         self.M_parts = [np.zeros((6, 6))]
         self.pairs = []                      # beams' mass between two parts
         self.beams = []
-        self.given_velocity = {}
+        self.given_velocity = [np.zeros(6, bool)]
         self._read_parts()
         self._read_beams()
         self._read_masses()
@@ -49,6 +50,8 @@ class Mechanism(Parts, Joints, Kinematics, Laws, ReadsLocalLaws, Beams):
         self._vector_index, self._dot_index = {}, {}
         for table in study.get("joint", []):
             self._read_joint(table)
+        self._read_bushings()
         self._freeze()
+        self._read_gears()
         self._read_forces()
         self._read_local_laws()

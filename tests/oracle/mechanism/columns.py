@@ -5,6 +5,8 @@ import numpy as np
 from mechanism.rotations import vector_of
 
 LETTERS = ["x", "y", "z", "rx", "ry", "rz"]
+PLANE_MOUNT = ["force_x [N]", "force_y [N]", "moment [N m]"]
+SPACE_MOUNT = ["force_x [N]", "force_y [N]", "force_z [N]", "moment_x [N m]", "moment_y [N m]", "moment_z [N m]"]
 
 
 def motion(march, state, a):
@@ -64,7 +66,7 @@ def joints(march, state, t, kin, a, mu):
     lock_mu = {}
     for l in march.locks:
         if l.held and l.rigid:
-            lock_mu[l.joint.name] = mu[at]
+            lock_mu[l.joint.name] = lock_mu.get(l.joint.name, 0.0) + mu[at]
             at += 1
     holds = {}
     for d in march.dry:
@@ -107,11 +109,17 @@ def joints(march, state, t, kin, a, mu):
         unit, what = ("[N m]", "moment") if turning else ("[N]", "force")
         if j.name in drive_mu:
             row[f"{j.name}.drive_{what} {unit}"] = drive_mu[j.name]
-        if j.lock is not None and j.lock["stiffness"] == 0:
+        if any(lock["stiffness"] == 0 for lock in j.locks):
             row[f"{j.name}.reaction_lock_{what} {unit}"] = lock_mu.get(j.name, 0.0)
-        if j.way is not None and (j.stiffness or j.damping or j.formula is not None or j.points is not None or j.lock is not None
-                                  and j.lock["stiffness"]):
+        if j.way is not None and (j.stiffness or j.damping or j.formula is not None or j.points is not None
+                                  or any(lock["stiffness"] for lock in j.locks)):
             row[f"{j.name}.law_{what} {unit}"] = march.law_force.get(j.name, 0.0)
+    for gear in m.gears:
+        turning = m.coordinates[gear.first.way].turning
+        row[f"{gear.name}.reaction_gear_{'moment [N m]' if turning else 'force [N]'}"] = mu[gear.row]
+    for b, told in zip(m.bushings, march.mount_told):
+        for name, value in zip(SPACE_MOUNT if m.space else PLANE_MOUNT, told):
+            row[f"{b.name}.{name}"] = value
     for d in march.dry + march.immobile:
         if d.resting or d in march.immobile:
             force = np.zeros(len(d.maps))

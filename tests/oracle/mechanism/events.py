@@ -71,10 +71,21 @@ class Events:
                     hits.append((brentq(f, a, b, xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-14) if x > 0 else a, what))
                 elif what[0] in ("stops",) and x <= 0 and y < 0 and a == t0:
                     hits.append((a + 1e-3 * (b - a), what))
+                elif what[0] == "meets" and a == t0 and x <= 0 and y < -1e-12 * (1 + abs(what[1].at)):
+                    hits.append((self._comes_back(lambda t: self.guards(self.unpack(dense(t))[0], t)[k][1], a, b), what))
             if hits:
                 return min(hits, key=lambda h: h[0])
             before = after
         return None
+
+    @staticmethod
+    def _comes_back(gap, a, b):
+        """When what begins on an open lock at a, and is beyond it at b, reaches it: at once, or after a way that is shorter than a step."""
+        times = [a, *(a + (b - a) * np.logspace(-6, 0, 25))]
+        outside = [k for k, t in enumerate(times) if gap(t) > 0]
+        if not outside:
+            return a
+        return brentq(gap, times[outside[-1]], times[outside[-1] + 1], xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-14)
 
     def _turns(self, dense, a, b):
         """Borders of laws that are passed between a and b."""
@@ -102,19 +113,18 @@ class Events:
                     self.ended_laws = True
                 item.done = True
             if item.rigid:
-                for d in self.dry:
-                    if d.joint is item.joint:
-                        d.resting = True
+                self.rest_dry()
                 kept = [(d, d.going) for d in self.dry]
                 for d in self.dry:     # impulses are taken without friction
                     if d.going is None:
                         d.going = np.zeros(len(d.maps))
                 before = self.kinetic(state)
-                state, work = self.impulse(self.project(state, t, velocities=False), t)
+                state, work = self.impact(self.project(state, t, velocities=False), t)
                 self.lost += before - self.kinetic(state) + work
                 self.driven += work
                 for d, going in kept:
                     d.going = going
+                self.rest_dry()
                 self.settle_by_rates(state)
             return self.settle(state, t)
         if kind == "leaves":
@@ -173,9 +183,7 @@ class Events:
         for opened in itertools.product([False, True], repeat=len(pressing)):
             for l, o in zip(pressing, opened):
                 l.held = not o
-                for d in self.dry:
-                    if d.joint is l.joint:
-                        d.resting = not o
+            self.rest_dry()
             for choice in sorted(itertools.product(*choices), key=lambda c: sum(x is not None for x in c)):
                 for d, c in zip(rest, choice):
                     d.going, d.fresh = c, c is not None

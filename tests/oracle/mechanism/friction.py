@@ -21,11 +21,16 @@ class Dry:
 
 
 class Lock:
-    def __init__(self, joint, side):
-        t = joint.lock
-        self.joint, self.side = joint, side
+    """One of a joint's locks. `side` is +1 where the values below it are free; `met` says that the configuration given lies on it."""
+
+    def __init__(self, joint, t, start):
+        self.joint = joint
         self.at, self.kind, self.k, self.c = t["at"], t["kind"], t["stiffness"], t["damping"]
-        self.held = False
+        self.met = abs(self.at - start) <= 1e-9 * (1 + abs(start))
+        if self.met and t["side"] is None:
+            raise Refused("a joint that starts on its lock, of no side")
+        self.side = {"below": 1.0, "above": -1.0}[t["side"]] if self.met else math.copysign(1.0, self.at - start)
+        self.held = False             # of one that the start lies on: until velocities or forces open it
         self.done = False             # a latch that holds: the law of the joint has ended
 
     @property

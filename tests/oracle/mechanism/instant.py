@@ -28,7 +28,8 @@ class Instant:
         Q = m.weight.copy()
         u = m.all_velocities(state.u)
         load_power = float(m.weight @ state.u)
-        damper_power = stored = 0.0
+        mounted, self.mount_told, stored, damper_power = m.mount_forces(state, (S, dS, S1, S2), u)
+        Q += mounted
         full = np.zeros((len(m.names), 6))
         Jw = np.einsum("pij,pj->pi", m.J_parts, u[:, 3:])
         full[:, 3:] -= cross(u[:, 3:], Jw)

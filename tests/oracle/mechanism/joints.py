@@ -21,7 +21,7 @@ class Joint:
         self.ways = []          # two of friction in two directions
         self.law = None
         self.drive = None
-        self.lock = None
+        self.locks = []
         self.friction = []
 
 

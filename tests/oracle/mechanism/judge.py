@@ -9,7 +9,7 @@ import numpy as np
 from mechanism import Mechanism, Refused, moved
 from mechanism.columns import transient_row
 from mechanism.march import March
-from mechanism.rest import eigenvalues, equilibrium, equilibrium_at, let_go, march_scale, modes_about, state_of_row, stiffness
+from mechanism.rest import begin_at_rest, eigenvalues, equilibrium, equilibrium_at, let_go, march_scale, modes_about, state_of_row, stiffness
 
 # Errors of velocities and energies over those of positions. Accelerations and forces are held to the state that is told; only
 # where a study leaves out coordinates, so that there is none, are they held to ours.
@@ -253,7 +253,7 @@ def judge_modes(study, analysis, folder):
     if about == "static":
         state = told_equilibrium(study, march, folder)
     elif about == "given":
-        state = march.begin()
+        state = begin_at_rest(march)
     else:
         if about.get("static"):
             raise Refused("modes about the equilibrium next to where a transient leads")
@@ -261,7 +261,7 @@ def judge_modes(study, analysis, folder):
         duration = study.number(transient_of["duration"])
         at = study.number(about.get("time", duration))
         start = told_equilibrium(study, march, folder, velocities=True) if transient_of.get("initial") == "static" else None
-        state = march.run(duration, [at], start=start)[0][1]
+        state = march.run(at, [at], start=start)[0][1]      # no farther: locks are as they are then
         march.window = (at, np.inf)      # loads of that instant, not of the last stretch of the march
         coarse = 1e6 * 100 * study.number(transient_of["step"]["tolerance"])
     if march.has_memories(state):

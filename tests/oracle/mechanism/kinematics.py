@@ -29,9 +29,8 @@ class Kinematics:
         self.scalar_count = nd + na + nr + len(self.turns)
         self.first_atan = nd
         place = lambda s: base[s[0]] + s[1]
-        self.row_owner = []
         rows, constants = [], []
-        for k, j in enumerate(self.joints):
+        for j in self.joints:
             j.row_numbers = []
             for form, constant in j.rows:
                 line = np.zeros(self.scalar_count)
@@ -40,7 +39,6 @@ class Kinematics:
                 j.row_numbers.append(len(rows))
                 rows.append(line)
                 constants.append(constant)
-                self.row_owner.append(k)
         self.row_map = np.array(rows).reshape(len(rows), self.scalar_count)
         self.row_constant = np.array(constants, float)
         lines = []
@@ -64,7 +62,7 @@ class Kinematics:
         scalars = self.scalars(self.start_state(), bias=False)[0]
         begin = self.way_map @ scalars
         for k, c in enumerate(self.coordinates):
-            if c.kind in ("displacement", "x", "y"):
+            if c.kind in ("displacement", "x", "y", "mount"):
                 self.way_constant[k] -= begin[k]
 
     def start_state(self):

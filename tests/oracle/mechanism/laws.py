@@ -64,11 +64,11 @@ class Laws:
                 j.drive_beyond = t["drive"].get("beyond", "error")
             else:
                 j.drive_formula = self.source.formula(str(t["drive"]), ("t",))
-        j.lock = None
-        if "lock" in t:
-            lock = t["lock"]
-            j.lock = dict(at=self.number(lock["at"]), kind=lock.get("kind"), stiffness=self.number(lock.get("stiffness", 0.0)),
-                          damping=self.number(lock.get("damping", 0.0)))
+        given = t.get("lock", [])
+        j.locks = [dict(at=self.number(lock["at"]), kind=lock["kind"], stiffness=self.number(lock.get("stiffness", 0.0)),
+                        damping=self.number(lock.get("damping", 0.0)), side=lock.get("side"))
+                   for lock in (given if isinstance(given, list) else [given])]
+        j.rate = self.number(t["rate"]) if "rate" in t else None
         j.friction = None
         if "friction" in t:
             f = t["friction"]

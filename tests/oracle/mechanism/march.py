@@ -14,9 +14,10 @@ from mechanism.friction import Lock, ReadsFriction
 from mechanism.instant import Instant
 from mechanism.local_laws import MarchesLocalLaws
 from mechanism.rotations import product
+from mechanism.starts import Starts
 
 
-class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
+class March(ReadsFriction, MarchesLocalLaws, Instant, Starts, Events):
     def __init__(self, model: Mechanism, rtol=1e-10):
         self.model, self.rtol = model, rtol
         m = model
@@ -113,9 +114,10 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
         m = self.model
         kin = m.scalars(state)
         G, _, rate, _ = self.rows(state, t, kin)
+        self.impulses = np.zeros(len(G))
         if len(G) == 0:
             return state, 0.0
-        impulses = -self._through(G)(rate)
+        impulses = self.impulses = -self._through(G)(rate)
         out = state.copy()
         out.u = state.u + self.Linv.T @ (self.Linv @ (G.T @ impulses))
         work = 0.0
@@ -126,9 +128,10 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
 
     # ---- the march --------------------------------------------------------------------------------------------------
     def begin(self, state=None):
-        """The start: onto the constraints, locks open on the side of the start, velocities projected."""
+        """The start: onto the constraints; locks open but for those that the start lies on; velocities, unless drives stand."""
         m = self.model
         self.window = (0.0, math.inf)
+        self.from_rest = state is not None
         state = state if state is not None else m.start_state()
         if state.memories is None:
             state.memories = np.zeros(len(m.local_laws))
@@ -136,14 +139,15 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
         self.rest_default = ways.copy()
         for d in self.dry:
             d.going, d.resting, d.fresh, d.place = np.zeros(len(d.maps)), True, False, np.zeros(len(d.maps))
-        state = self.project(state, 0.0)
-        here = m.way_map @ m.scalars(state)[0] + m.way_constant
         if not self.locks:
-            self.locks = [Lock(j, math.copysign(1.0, j.lock["at"] - here[j.way])) for j in m.joints if j.lock is not None]
+            self.locks = [Lock(j, lock, ways[j.way]) for j in m.joints for lock in j.locks]
+            for l in self.locks:
+                l.held = l.met and not self.from_rest
+                l.done = l.held and l.kind == "latch"
+        state = self.project(state, 0.0, velocities=False)
         self._leave_out_immobile(state)
-        for d in self.dry:
-            d.resting = False
-        return state
+        self.rest_dry()
+        return state if self.standing else self.set_off(state, 0.0)
 
     def _leave_out_immobile(self, state):
         """A dry joint that the other joints leave no motion rubs nowhere; what it carries is not determined."""
@@ -152,7 +156,8 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
         rows = self.rows(state, 0.0, kin)[0]
         for d in list(self.dry):
             seen = self.Linv @ (d.maps @ kin[1]).T
-            held, led = (_spans(self.Linv @ G.T, seen) for G in (rows[: len(m.row_map)], rows))
+            joints = len(m.row_map)
+            held, led = (_spans(self.Linv @ G.T, seen) for G in (rows[:joints], rows[: joints + len(self.drives)]))
             if held.all():
                 self.dry.remove(d)
                 self.immobile.append(d)
@@ -197,6 +202,7 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Events):
         self.rates_scale = self._rate_scale(state, duration)
         self.settle_by_rates(state)
         state = self.settle(state, t)
+        self.settle_soft(state, t)
         self.settle_local(state, t)
         out, next_time = [], 0
         times = list(times)

@@ -24,6 +24,7 @@ class Parts:
         self.turn.append(np.array([1.0, 0, 0, 0]))
         self.angle.append(0.0)
         self.velocity.append(np.zeros(6))
+        self.given_velocity.append(np.zeros(6, bool))
         self.is_body.append(body)
         self.M_parts.append(np.zeros((6, 6)))
         return len(self.names) - 1
@@ -32,8 +33,10 @@ class Parts:
         if "velocity" in table:
             v = self.numbers(table["velocity"])
             self.velocity[part][: len(v)] = v
+            self.given_velocity[part][:3] = True
         if "angular_velocity" in table:
             w = table["angular_velocity"]
+            self.given_velocity[part][3:] = True
             if self.space:
                 self.velocity[part][3:] = self.numbers(w)
             else:
@@ -124,6 +127,7 @@ class Parts:
             for k in range(1, n):
                 chain.append(self._add_part(f"{name}:{k}", self.place[a] + (self.place[b] - self.place[a]) * k / n, False))
                 self.velocity[-1] = self.velocity[a] + (self.velocity[b] - self.velocity[a]) * k / n
+                self.given_velocity[-1] = self.given_velocity[a] | self.given_velocity[b]
             chain.append(b)
             C = np.array([E * A, ky * G * A, kz * G * A, G * torsion, E * Iy, E * Iz])
             lumped = table.get("mass", "consistent") == "lumped"
@@ -192,6 +196,7 @@ class Parts:
         self.start_angle = np.array(self.angle)
         self.start_R = matrix_of(self.start_q)
         self.start_u = np.array(self.velocity).reshape(-1)[self.free]
+        self.has_velocity = np.array(self.given_velocity).reshape(-1)[self.free]
 
     def all_velocities(self, u):
         out = np.zeros(6 * len(self.names))

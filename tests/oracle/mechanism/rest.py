@@ -4,6 +4,8 @@ The stiffness is the derivative of what is out of balance, Q + G^T multiplier wi
 motion that a part can make by itself; the constraints then leave the motions that are the null space of G.
 """
 
+import itertools
+
 import numpy as np
 
 from mechanism import Refused, State, moved
@@ -213,18 +215,36 @@ def equilibrium_at(march, state):
     raise Refused("no equilibrium next to what is told")
 
 
+def begin_at_rest(march):
+    """The configuration given, with those of the stops that it lies on which press where nothing moves; friction is left out."""
+    march.standing = True
+    state = at_rest(march, march.begin())
+    for d in march.dry:
+        d.resting = True
+    m, met = march.model, [l for l in march.locks if l.held and l.kind == "stop"]
+    kin = m.scalars(state)
+    for opened in itertools.product((False, True), repeat=len(met)):
+        for l, o in zip(met, opened):
+            l.held = not o
+        a, mu, _ = march.instant(state, 0.0, kin)
+        parts = march.lock_parts(mu)
+        gathers = {l: l.side * (m.way_map[l.joint.way] @ (kin[1] @ a + kin[3])) for l in met}
+        nothing = 1e-9 * np.max(np.abs(a), initial=0.0)
+        if all(l.side * parts[l] <= 1e-12 * np.max(np.abs(mu)) for l in met if l.held and l.rigid) and all(
+                (gathers[l] >= -nothing) if l.held else gathers[l] <= nothing for l in met if not l.rigid or not l.held):
+            return state
+    raise Refused("no consistent choice of stops at rest")
+
+
 def let_go(march, state, velocities=False):
     """The start of a march from an equilibrium: with the velocities given, or at rest."""
     march.standing = True
     state.memories = march.memories(state, march.model.scalars(state))
+    march.rest_dry()
     for d in march.dry:
-        d.resting = False
         d.place = d.maps @ march.model.scalars(state)[0]
     march.standing = not velocities
-    if velocities:
-        state.u = np.array(march.model.start_u)
-        return march.project_velocities(state, 0.0)
-    state.u = np.zeros(march.model.nf)
+    state.u = np.array(march.model.start_u) if velocities else np.zeros(march.model.nf)
     return state
 
 
