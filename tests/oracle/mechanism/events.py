@@ -71,12 +71,16 @@ class Events:
                     hits.append((brentq(f, a, b, xtol=1e-15 * max(abs(b), 1e-300), rtol=1e-14) if x > 0 else a, what))
                 elif what[0] in ("stops",) and x <= 0 and y < 0 and a == t0:
                     hits.append((a + 1e-3 * (b - a), what))
-                elif what[0] == "meets" and a == t0 and x <= 0 and y < -1e-12 * (1 + abs(what[1].at)):
+                elif what[0] == "meets" and a == t0 and -1e-9 * self._far(what[1]) <= x <= 0 and y < -1e-12 * self._far(what[1]):
                     hits.append((self._comes_back(lambda t: self.guards(self.unpack(dense(t))[0], t)[k][1], a, b), what))
             if hits:
                 return min(hits, key=lambda h: h[0])
             before = after
         return None
+
+    def _far(self, lock):
+        """What a small part of is nothing on the way of a lock."""
+        return abs(lock.at) + (1.0 if self.model.coordinates[lock.joint.way].turning else self.box)
 
     @staticmethod
     def _comes_back(gap, a, b):
@@ -176,8 +180,9 @@ class Events:
         """Of what is at rest, which sticks and which slides: the one consistent choice, found by trying all."""
         m = self.model
         kin = m.scalars(state)
-        rest = [d for d in self.dry if not d.resting and id(d) not in leave and d.going is None]
         pressing = [l for l in self.locks if l.held and l.rigid and l.kind == "stop"]
+        rest = [d for d in self.dry if id(d) not in leave and (d.going is None and not d.resting
+                                                               or d.resting and any(l.joint is d.joint for l in pressing))]
         best = None
         choices = [[None] + ([np.array([1.0]), np.array([-1.0])] if len(d.maps) == 1 else ["away"]) for d in rest]
         for opened in itertools.product([False, True], repeat=len(pressing)):

@@ -108,10 +108,26 @@ def transient(study, analysis, folder, start=None):
         return row, energy, None if there is None else transient_row(march, there, t, works)[0]
     pairs = march.run(duration, times, start=start, columns=both)
     ours = {k: np.array([p[0].get(k, np.nan) for p in pairs]) for k in pairs[0][0]}
+    if model.space:
+        turn_alike(ours, theirs)
     there = None
     if all(p[2] is not None for p in pairs):
         there = {k: np.array([p[2].get(k, np.nan) for p in pairs]) for k in pairs[0][2]}
     return march, model, ours, theirs, pairs, there
+
+
+def turn_alike(ours, theirs):
+    """Of the two rotation vectors of a half turn, which is the shortest turn to round-off only, ours is the one next to theirs."""
+    for name in [c[: -len(".rx.angle [rad]")] for c in ours if c.endswith(".rx.angle [rad]")]:
+        columns = [f"{name}.{letter}.angle [rad]" for letter in ("rx", "ry", "rz")]
+        if not all(c in ours and c in theirs for c in columns):
+            continue
+        mine, told = (np.array([of[c] for c in columns]) for of in (ours, theirs))
+        size = np.maximum(np.linalg.norm(mine, axis=0), 1e-300)
+        other = mine * (1 - 2 * np.pi / size)
+        nearer = (size > 2) & (np.linalg.norm(other - told, axis=0) < np.linalg.norm(mine - told, axis=0))
+        for c, line in zip(columns, np.where(nearer, other, mine)):
+            ours[c] = line
 
 
 def told_memories(march, row, state):

@@ -222,7 +222,10 @@ class March(ReadsFriction, MarchesLocalLaws, Instant, Starts, Events):
                 state = self.settle(state, t)
                 self.settle_local(state, t)
             while t < mark:
-                solver = DOP853(self.slope, t, self.pack(state, works), mark, rtol=self.rtol, atol=self._atol(state))
+                # what begins to slip in two directions keeps its own for the first step only
+                pair = any(d.fresh and d.going is not None and len(d.maps) == 2 for d in self.dry)
+                solver = DOP853(self.slope, t, self.pack(state, works), mark, rtol=self.rtol, atol=self._atol(state),
+                                first_step=min(1e-5 * duration, mark - t) if pair else None)
                 found = None
                 while solver.status == "running":
                     t0 = solver.t

@@ -1,4 +1,5 @@
-"""Random mechanisms with bushings, gears, several locks on a joint, starts on locks and rates of joints, for seeds from 40001 on."""
+"""Random mechanisms with bushings, gears, several locks on a joint, starts on locks and rates of joints, for seeds from 40001 on; each with
+a gear for seeds from 45001 on."""
 
 import pathlib
 
@@ -6,16 +7,18 @@ import numpy as np
 
 from random_mechanism import Generator
 
-FIRST, LAST = 40001, 44999
+FIRST, GEARED, LAST = 40001, 45001, 49999
 ONE_WAY = ("revolute", "prismatic", "screw", "strut")
 IMPLICIT = ["average_acceleration", "galerkin", "backward_difference", "damped_newmark", {"name": "newmark", "beta": 0.3025, "gamma": 0.6},
             {"name": "hht", "alpha": -0.2}, {"name": "wbz", "rho_inf": 0.6}, {"name": "generalized_alpha", "rho_inf": 1.0}]
 
 
 class WithMounts(Generator):
+    geared = 0.35      # the share of models for which a gear is sought
+
     def push(self, names):
         super().push(names)
-        wanted = [what for what, share in ((self.gears, 0.35), (self.bushings, 0.45), (self.locks, 0.5), (self.rates, 0.4)) if self.chance(share)]
+        wanted = [what for what, share in ((self.gears, self.geared), (self.bushings, 0.45), (self.locks, 0.5), (self.rates, 0.4)) if self.chance(share)]
         for what in wanted:
             what()
         for what in (self.bushings, self.locks, self.rates):
@@ -157,4 +160,11 @@ class WithMounts(Generator):
 
 def generate(seed, folder):
     pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
-    return WithMounts(seed, folder).write()
+    made = WithMounts(seed, folder)
+    made.geared = 1.0 if seed >= GEARED else made.geared
+    path = made.write()
+    while seed >= GEARED and "gear" not in made.tables:
+        made = WithMounts(int(made.rng.integers(1 << 31)), folder)
+        made.geared = 1.0
+        path = made.write()
+    return path
