@@ -22,9 +22,12 @@ struct RandomMotion {
     for (std::size_t i = 1; i < padded.size(); ++i) padded[i] = draw(random);
     phase.assign(4, 0);
   }
-  model::Motion motion() const { return {0.3, model::Side::right, q.data(), padded.data() + 1, phase.data()}; }
+  model::Motion motion() const {
+    return {0.3, model::Side::right, q.data(), padded.data() + 1, phase.data(), nullptr, nullptr, laws};
+  }
   std::vector<double> q, padded;
   std::vector<int> phase;
+  model::LawHistory laws;
 };
 
 inline model::PlaneNode free_plane_node(int i) { return {3 * (i + 1), {3 * i, 3 * i + 1, 3 * i + 2}}; }

@@ -48,13 +48,12 @@ void write_events(const std::string& name, const integrate::Events& events, resu
       "events",
       "time",
       {scalar("time", "s", "when it happened"),
-       {"joint", "1", "whose lock or friction", "", {}, events.parts},
-       {"event", "1", "what it did", "", {}, {"lets_go", "locks", "slips", "sticks"}},
+       {"joint", "1", "whose lock or friction, or which slider", "", {}, events.parts},
+       {"event", "1", "what it did", "", {}, {"lets_go", "locks", "slips", "sticks", "opens", "closes"}},
        scalar("energy_lost", "J", "energy that a rigid lock took, or that a damped stop still held as it let go")},
       {{"type", "events"}}};
   if (events.are_of_contacts) {
     layout.blocks[1].description = "which slider or stop";
-    layout.blocks[2].categories.insert(layout.blocks[2].categories.end(), {"opens", "closes"});
     layout.attributes.emplace_back("of", "contacts");
   }
   const bool has_places = !events.places.empty();

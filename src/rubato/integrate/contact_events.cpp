@@ -1,4 +1,5 @@
 #include <rubato/integrate/contact_events.hpp>
+#include <rubato/integrate/law_changes.hpp>
 
 #include <fmt/format.h>
 
@@ -56,17 +57,11 @@ int ContactEvents::branch_of_law(Index contact, const system::State& state) cons
 }
 
 void ContactEvents::note_law(Watched& one, int now, double t) {
-  const auto is = [](int branch, model::Law::Contact contact) { return branch == static_cast<int>(contact); };
-  using enum model::Law::Contact;
-  const auto slips_at = [&](int branch) { return is(branch, slips_forwards) || is(branch, slips_backwards); };
   const std::size_t part = parts_[static_cast<std::size_t>(one.contact)];
-  if (is(now, open)) {
-    events_.add({t, part, Change::opens});
-  } else {
-    if (is(one.branch, open)) events_.add({t, part, Change::closes});
-    if (is(now, sticks) || (slips_at(one.branch) && slips_at(now))) events_.add({t, part, Change::sticks});
-    if (slips_at(now)) events_.add({t, part, Change::slips});
-  }
+  tell_law_changes(static_cast<model::Law::Contact>(one.branch), static_cast<model::Law::Contact>(now),
+                   [&](Change change) {
+                     events_.add({t, part, change});
+                   });
   one.branch = now;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rubato::integrate {
 
@@ -45,18 +44,10 @@ model::LawPoint PressedMotion::point_of(const Place& place, const Pressing& pres
 
 PressedMotion::Place PressedMotion::place(Index contact, const system::State& from, const system::State& to,
                                           double share) const {
-  const double h = to.t - from.t, s = share, r = 1.0 - s;
-  const double u0 = system_.relative_displacement(contact, from.q), v0 = system_.relative_displacement(contact, from.v);
-  const double u1 = system_.relative_displacement(contact, to.q), v1 = system_.relative_displacement(contact, to.v);
-  double first = (6.0 * (u1 - u0) / h - 4.0 * v0 - 2.0 * v1) / h;
-  double last = (6.0 * (u0 - u1) / h + 2.0 * v0 + 4.0 * v1) / h;
-  // Of the displacements of a short step nothing but round-off is left.
-  constexpr double round_off = 64.0 * std::numeric_limits<double>::epsilon(), little = 1e-2;
-  const double mean = (v1 - v0) / h;
-  if (!(round_off * (std::abs(u0) + std::abs(u1)) < little * h * h * std::max(std::abs(first), std::abs(last))))
-    first = last = mean;
-  return {r * r * (1.0 + 2.0 * s) * u0 + s * s * (3.0 - 2.0 * s) * u1 + h * s * r * (r * v0 - s * v1),
-          6.0 * s * r * (u1 - u0) / h + r * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1, r * first + s * last};
+  const CubicPath path{to.t - from.t, system_.relative_displacement(contact, from.q),
+                       system_.relative_displacement(contact, from.v), system_.relative_displacement(contact, to.q),
+                       system_.relative_displacement(contact, to.v)};
+  return path.at(share);
 }
 
 PressedMotion::Pressing PressedMotion::pressing(Index law, const system::State& from, const system::State& to,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/cubic_path.hpp>
 #include <rubato/model/laws/law.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
@@ -20,9 +21,7 @@ class PressedMotion {
   model::LawPoint going_on(Index law, const system::State& from, const system::State& to, double share, double moment);
 
  private:
-  struct Place {
-    double u, rate, acceleration;
-  };
+  using Place = CubicPath::Place;
   struct Pressing {
     double value, rate, second_rate;
   };

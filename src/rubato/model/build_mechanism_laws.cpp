@@ -1,5 +1,7 @@
+#include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
 #include <rubato/model/joints/joint_kinds.hpp>
+#include <rubato/model/laws/jenkins.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -9,13 +11,18 @@
 namespace rubato::model {
 namespace {
 
-void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& part) {
-  if (law.name.empty()) throw InvalidInput(law.where, fmt::format("{} needs a name", law_kind(law.kind).title));
+constexpr const char* slider_table = "slider";
+
+/// @param title  "a slider", for messages
+void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& title,
+                       const std::string& part) {
+  if (law.name.empty()) throw InvalidInput(law.where, fmt::format("{} needs a name", title));
   refuse_unfit_name(law.name, law.where);
   const Mechanism& mechanism = assembly.mechanism;
   const auto is_called_so = [&](const auto& other) { return other.name == law.name; };
   if (std::any_of(mechanism.laws.begin(), mechanism.laws.end(), is_called_so))
-    throw InvalidInput(law.where, fmt::format("two laws are called \"{}\"", law.name));
+    throw InvalidInput(law.where, fmt::format("two {} are called \"{}\"",
+                                              law.kind == slider_table ? "sliders or laws" : "laws", law.name));
   const auto is_among = [&](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), law.name) != names.end();
   };
@@ -77,24 +84,105 @@ NumberDifference difference_of(const MechanismAssembly& assembly, const LawDescr
   return u;
 }
 
+LawCoordinate place_of(const MechanismAssembly& assembly, const LawDescription& law, const std::string& part) {
+  if (law.joint.empty()) return difference_of(assembly, law, part);
+  return coordinate_of_joint(assembly, law, part);
+}
+
+/// Where a slider rubs, as of other laws.
+LawDescription as_law(const SliderDescription& slider) {
+  LawDescription law;
+  law.kind = slider_table;
+  law.name = slider.name;
+  law.between = slider.between;
+  law.between_where = slider.between_where;
+  law.where = slider.where;
+  return law;
+}
+
+Index law_called(const Mechanism& mechanism, const std::string& name) {
+  const auto& laws = mechanism.laws;
+  const auto found = std::find_if(laws.begin(), laws.end(), [&](const auto& law) { return law.name == name; });
+  return found == laws.end() ? -1 : static_cast<Index>(found - laws.begin());
+}
+
+/// The stop of a joint whose force presses; -1 where no joint is called so.
+Index stop_of_joint(const MechanismAssembly& assembly, const SliderDescription& slider, const std::string& part) {
+  const std::string& name = slider.normal_law;
+  const auto& joints = assembly.joint_names;
+  if (std::find(joints.begin(), joints.end(), name) == joints.end()) return -1;
+  const auto& locks = assembly.mechanism.locks;
+  const auto is_of_it = [&](const Lock& lock) { return lock.name == name; };
+  const auto found = std::find_if(locks.begin(), locks.end(), is_of_it);
+  const auto refuse = [&](const char* what, const char* remedy) {
+    throw InvalidInput(slider.normal_law_where,
+                       fmt::format("{}: normal_load names the joint \"{}\", {}; {}", part, name, what, remedy));
+  };
+  if (found == locks.end())
+    refuse("which has no lock", "give it lock = { at = ..., kind = \"stop\", stiffness = ... }");
+  if (std::count_if(locks.begin(), locks.end(), is_of_it) > 1)
+    refuse("which has several locks",
+           "let a [[nonlinear_spring]] on that joint press, or join the same by a second strut");
+  if (found->is_latch || found->is_rigid())
+    refuse(found->is_latch ? "whose lock is a latch" : "whose stop has no stiffness",
+           "what presses is the force of a stop with a stiffness, or of a [[nonlinear_spring]]");
+  return static_cast<Index>(found - locks.begin());
+}
+
+NormalForce normal_of(const MechanismAssembly& assembly, const SliderDescription& slider, const std::string& part) {
+  NormalForce normal;
+  if (!slider.is_law()) {
+    normal.value = assembly.at_least_zero(slider.normal_load, part + ": normal_load");
+    return normal;
+  }
+  const std::string& name = slider.normal_law;
+  if (name.empty()) return build_normal_formula(slider, assembly.parameters, part);
+  const auto& sliders = assembly.description.sliders;
+  if (std::any_of(sliders.begin(), sliders.end(), [&](const SliderDescription& other) { return other.name == name; }))
+    throw InvalidInput(slider.normal_law_where,
+                       fmt::format("{}: the force of the slider \"{}\" rubs, it does not press; name a "
+                                   "[[nonlinear_spring]] across it, or a joint with a stop",
+                                   part, name));
+  normal.law = law_called(assembly.mechanism, name);
+  if (normal.law < 0) normal.stop = stop_of_joint(assembly, slider, part);
+  if (normal.depends_on_motion()) return normal;
+  std::vector<std::string> known = assembly.joint_names;
+  for (const MechanismLaw& law : assembly.mechanism.laws) known.push_back(law.name);
+  throw InvalidInput(slider.normal_law_where,
+                     fmt::format("{}: normal_load names \"{}\", which is no law and no joint with a stop{}", part, name,
+                                 suggestion(name, known)));
+}
+
 }  // namespace
+
+void take_sliders(MechanismAssembly& assembly) {
+  for (const SliderDescription& slider : assembly.description.sliders) {
+    const LawDescription place = as_law(slider);
+    const std::string part = fmt::format("slider \"{}\"", slider.name);
+    refuse_taken_name(assembly, place, "a slider", part);
+    if (slider.normal_law.empty() && slider.normal_law_where.line > 0)
+      throw InvalidInput(slider.normal_law_where,
+                         fmt::format("{}: normal_load names no law; give the name of a law or of a joint with a stop, "
+                                     "or a number",
+                                     part));
+    const double stiffness = assembly.positive(slider.stiffness, part + ": stiffness");
+    const double mu = assembly.at_least_zero(slider.friction_coefficient, part + ": friction_coefficient");
+    assembly.mechanism.add_law(slider.name, slider_table, place_of(assembly, place, part), make_jenkins(stiffness, mu),
+                               normal_of(assembly, slider, part));
+  }
+}
 
 void take_local_laws(MechanismAssembly& assembly) {
   for (const LawDescription& description : assembly.description.laws) {
     const LawKind& kind = law_kind(description.kind);
     const std::string part = fmt::format("{} \"{}\"", description.kind, description.name);
-    refuse_taken_name(assembly, description, part);
+    refuse_taken_name(assembly, description, kind.title, part);
     if (!description.shares.empty())
       throw InvalidInput(description.shares_where,
                          fmt::format("{}: shares are of the coordinates of structures, and this model has joints or "
                                      "bodies; take `between` or `joint`",
                                      part));
-    LawCoordinate u;
-    if (description.joint.empty())
-      u = difference_of(assembly, description, part);
-    else
-      u = coordinate_of_joint(assembly, description, part);
-    assembly.mechanism.add_law(description.name, description.kind, u,
+    assembly.mechanism.add_law(description.name, description.kind, place_of(assembly, description, part),
                                kind.make(description, assembly.parameters, part));
   }
 }

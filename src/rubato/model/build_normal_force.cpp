@@ -31,23 +31,27 @@ Index place_of(const Parts& parts, const std::string& name) {
 
 bool SliderDescription::is_law() const { return !normal_law.empty() || names_time(normal_load.expression); }
 
+NormalForce build_normal_formula(const SliderDescription& description, const numerics::Parameters& parameters,
+                                 const std::string& part) {
+  NormalForce normal;
+  const Quantity& load = description.normal_load;
+  try {
+    normal.formula = std::make_shared<const numerics::Formula>(load.expression, parameters, true);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(load.where, fmt::format("{}: normal_load: {}", part, error.message()));
+  }
+  const double start = (*normal.formula)(0.0);
+  if (!std::isfinite(start))
+    throw InvalidInput(load.where, fmt::format("{}: normal_load is {} at t = 0 (from \"{}\"); give a formula that is "
+                                               "finite",
+                                               part, start, load.expression));
+  return normal;
+}
+
 NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
                                const Model& model, const numerics::Parameters& parameters, const std::string& part) {
+  if (description.normal_law.empty()) return build_normal_formula(description, parameters, part);
   NormalForce normal;
-  if (description.normal_law.empty()) {
-    const Quantity& load = description.normal_load;
-    try {
-      normal.formula = std::make_shared<const numerics::Formula>(load.expression, parameters, true);
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(load.where, fmt::format("{}: normal_load: {}", part, error.message()));
-    }
-    const double start = (*normal.formula)(0.0);
-    if (!std::isfinite(start))
-      throw InvalidInput(load.where, fmt::format("{}: normal_load is {} at t = 0 (from \"{}\"); give a formula that is "
-                                                 "finite",
-                                                 part, start, load.expression));
-    return normal;
-  }
   const std::string& name = description.normal_law;
   normal.stop = place_of(model.stops, name);
   if (normal.stop < 0) normal.law = place_of(model.laws, name);

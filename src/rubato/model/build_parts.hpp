@@ -29,6 +29,11 @@ Prescribed build_prescribed(const PrescribedDescription& description, Index coor
 /// The name of a slider, stop or law in whose u a coordinate is; empty: none.
 std::string contact_at(const Model& model, Index coordinate);
 
+/// What presses on a slider whose load is a formula of t. Throws InvalidInput.
+/// @param part  "slider \"s1\""
+NormalForce build_normal_formula(const SliderDescription& description, const numerics::Parameters& parameters,
+                                 const std::string& part);
+
 /// What presses on a slider whose load does not stay the same, among the stops and laws of a model that has all of
 /// them. Throws InvalidInput.
 /// @param part  "slider \"s1\""

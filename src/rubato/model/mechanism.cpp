@@ -143,15 +143,14 @@ int Mechanism::add_shared_friction(int leader, const FreeCoordinate& s, double a
 }
 
 void Mechanism::add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
-                        std::shared_ptr<const Law> law) {
-  if (law->takes_normal())
-    throw InvalidInput(
-        fmt::format("\"{}\" is a law that takes a normal force, and nothing presses on laws of mechanisms; "
-                    "give the joint a friction of its own",
-                    name));
-  laws.push_back({name, kind, u, std::move(law), static_cast<Index>(laws.size()), law_memory_size, elements.size()});
-  law_memory_size += laws.back().law->memory_size();
-  elements.push_back(make_law_element(laws.back()));
+                        std::shared_ptr<const Law> law, const NormalForce& normal) {
+  MechanismLaw added{name, kind, u, std::move(law), static_cast<Index>(laws.size()), law_memory_size, elements.size()};
+  added.normal = normal;
+  if (normal.law >= 0) added.pressing = std::make_shared<MechanismLaw>(laws.at(static_cast<std::size_t>(normal.law)));
+  if (normal.stop >= 0) added.stop = std::make_shared<Lock>(locks.at(static_cast<std::size_t>(normal.stop)));
+  law_memory_size += added.law->memory_size();
+  elements.push_back(make_law_element(added));
+  laws.push_back(std::move(added));
 }
 
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,

@@ -148,9 +148,10 @@ struct Mechanism {
   /// @param arm  of its slip velocity over the rate of s
   int add_shared_friction(int leader, const FreeCoordinate& s, double arm);
   /// Adds a law with the element that makes its force.
-  /// @param kind  its table in the study file
-  void add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
-               std::shared_ptr<const Law> law);
+  /// @param kind    its table in the study file
+  /// @param normal  what presses on one that takes a normal force; of other laws and of stops those that are there
+  void add_law(const std::string& name, const std::string& kind, const LawCoordinate& u, std::shared_ptr<const Law> law,
+               const NormalForce& normal = {});
   /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
   void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);

@@ -82,6 +82,8 @@ class MechanismEquations final : public ConstrainedEquations {
   /// Force and displacement of a law where go_to() led [N] and [m], or [N m] and [rad].
   double law_force(std::size_t law) const;
   double law_displacement(std::size_t law) const;
+  model::Law::Contact law_contact(std::size_t law) const;  ///< what one that sticks does there
+  double law_normal(std::size_t law) const;                ///< what presses on it there, 0 where it is open [N]
   /// Of forces, gravity and laws of joints [n].
   void force_of_loads(Vector& out) override;
   /// External forces by laws of t, and gravity [n].
@@ -151,6 +153,7 @@ class MechanismEquations final : public ConstrainedEquations {
   model::Motion motion_;
   std::vector<model::LawPoint> step_start_;  // of the laws
   std::vector<double> start_memory_;         // of all laws there
+  std::vector<double> tried_memory_;         // of all laws where the step is tried to end
   std::vector<double> other_velocity_;       // after a zero, of a state to which the equations do not go
 };
 

@@ -12,6 +12,8 @@ model::LawPoint MechanismEquations::law_point(std::size_t j, const State& state,
   there.side = side;
   there.q = state.q.data();
   there.v = other_velocity_.data() + 1;
+  there.phase = state.phase.data();
+  there.laws.memory = state.memory.data();
   return mechanism_.model().laws[j].point(there);
 }
 
@@ -22,9 +24,10 @@ void MechanismEquations::begin_step(const State& from) {
 
 void MechanismEquations::go_to_end(const State& to, model::Side side) {
   go_to(to, side);
-  motion_.laws = {step_start_.data(), start_memory_.data()};
+  motion_.laws = {step_start_.data(), start_memory_.data(), tried_memory_.data()};
 }
 
+// What presses on a law comes before it: its memory is there already.
 void MechanismEquations::move_laws(State& to) {
   to.memory.resize(static_cast<Index>(start_memory_.size()));
   for (std::size_t j = 0; j < step_start_.size(); ++j) {
@@ -57,11 +60,22 @@ double MechanismEquations::law_force(std::size_t j) const {
   return law.law->at(law.point(motion_), motion_.laws.memory + law.memory).force;
 }
 
-double MechanismEquations::law_displacement(std::size_t j) const { return mechanism_.model().laws[j].point(motion_).u; }
+double MechanismEquations::law_displacement(std::size_t j) const {
+  return mechanism_.model().laws[j].displacement(motion_);
+}
+
+model::Law::Contact MechanismEquations::law_contact(std::size_t j) const {
+  const model::MechanismLaw& law = mechanism_.model().laws[j];
+  return law.law->contact(law.point(motion_), motion_.laws.memory + law.memory, 0.0);
+}
+
+double MechanismEquations::law_normal(std::size_t j) const {
+  return std::max(0.0, mechanism_.model().laws[j].point(motion_).normal);
+}
 
 void MechanismEquations::add_laws_of_time(Vector& out) {
   for (const model::MechanismLaw& law : mechanism_.model().laws)
-    if (law.law->depends_on_time()) add_force_of(law.element, out);
+    if (law.depends_on_time()) add_force_of(law.element, out);
 }
 
 }  // namespace rubato::system

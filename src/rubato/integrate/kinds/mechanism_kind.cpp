@@ -40,7 +40,9 @@ std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
   const model::Mechanism& model = mechanism_.model();
   std::vector<NonlinearPart> parts;
   for (const auto& law : model.laws)
-    parts.push_back({NonlinearPart::Family::law, law.kind, law.name, law.law->depends_on_time()});
+    parts.push_back({law.normal.formula || law.normal.depends_on_motion() ? NonlinearPart::Family::pressed_slider
+                                                                          : NonlinearPart::Family::law,
+                     law.kind, law.name, law.depends_on_time()});
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
   for (const auto& lock : model.locks) parts.push_back({NonlinearPart::Family::lock, "lock", lock.name});
@@ -52,8 +54,10 @@ void MechanismKind::for_each_time_law(const std::function<void(const model::Time
   for (const auto& force : model.forces) show(force.law);
   for (const auto& law : model.following_laws) show(law);
   for (const auto& formula : model.joint_formulas) show(model::FormulaLaw{formula});
-  for (const auto& law : model.laws)
+  for (const auto& law : model.laws) {
     if (const numerics::Formula* formula = law.law->formula_of_time()) show(model::FormulaLaw{*formula});
+    if (law.normal.formula) show(model::FormulaLaw{*law.normal.formula});
+  }
   for (const auto& drive : model.drives) {
     if (const auto* table = std::get_if<model::TableLaw>(&drive.law)) show(*table);
     if (const auto* formula = std::get_if<numerics::Formula>(&drive.law))

@@ -3,6 +3,7 @@
 #include <rubato/integrate/constrained/constrained_space.hpp>
 #include <rubato/integrate/constrained/constrained_stepper.hpp>
 #include <rubato/integrate/kinds/mechanism_march.hpp>
+#include <rubato/integrate/mechanism/law_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_energy.hpp>
 #include <rubato/integrate/mechanism/mechanism_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
@@ -128,9 +129,11 @@ class MechanismMarch final : public StepMarch {
         equations_(mechanism),
         stepper_(integrate::make_stepper(plan.method, equations_, newton_of(plan), plan.allow_unstable)),
         estimator_(make_mechanism_estimator(plan, *plan.automatic, equations_)),
-        timeline_(equations_, resolution * plan.duration),
+        timeline_(equations_, resolution * plan.duration, plan.automatic->plan.locate_sliders),
         balance_(equations_),
         watch_(plan.start, equations_),
+        law_events_(equations_, plan.start, timeline_.law_guards()),
+        listeners_(watch_, law_events_),
         state_(plan.start) {
     if (!has_equal_steps(plan)) return;  // with steps that change it is carried over by the march
     shift_acceleration(equations_, state_, stepper_->shift() * plan.automatic->plan.first);
@@ -146,7 +149,7 @@ class MechanismMarch final : public StepMarch {
   }
   void show(MarchVisitor& visitor) override { visitor.mechanism(equations_); }
   std::vector<double> kinks() const override { return timeline_.breakpoints(plan_.start.t, plan_.duration); }
-  Observer* listener() override { return &watch_; }
+  Observer* listener() override { return &listeners_; }
   long steps_a_report() const override { return 64; }
 
   AdaptiveReport go_to(double end, Observer* observer, TryLog* log) override {
@@ -157,7 +160,11 @@ class MechanismMarch final : public StepMarch {
     return integrate::failure_of(report, equations_, state_, {timeline_.chattering(), timeline_.events()});
   }
 
-  Events events() const override { return integrate::events_of(timeline_.events(), mechanism_, &plan_.start); }
+  Events events() const override {
+    Events events = integrate::events_of(timeline_.events(), mechanism_, &plan_.start);
+    law_events_.add_to(events);
+    return events;
+  }
 
   /// The work of the forces at the start along what Newton's method may leave of a step.
   double energy_round_off() override {
@@ -200,6 +207,16 @@ class MechanismMarch final : public StepMarch {
   MechanismTimeline timeline_;
   ConstrainedBalance balance_;
   MotionWatch watch_;
+  MechanismLawEvents law_events_;
+  struct Listeners final : Observer {
+    MotionWatch& watch;
+    MechanismLawEvents& law_events;
+
+    Listeners(MotionWatch& watch_, MechanismLawEvents& law_events_) : watch(watch_), law_events(law_events_) {}
+    bool accepted(const system::State& before, const system::State& after) override {
+      return watch.accepted(before, after) && law_events.accepted(before, after);
+    }
+  } listeners_;
   system::State state_;
 };
 

@@ -44,6 +44,7 @@ void MechanismMarches::take_equal_steps(const TransientRequest& /*request*/, Mar
   step.plan.first = step.plan.largest = plan.step;
   step.plan.smallest = 1e-12 * plan.duration;
   step.plan.locate_events = true;
+  step.plan.locate_sliders = false;
   step.estimator = LocalError{step.tolerance};
   step.expected_steps = std::ceil(plan.duration / plan.step * (1.0 - 1e-12));
   plan.automatic = step;
@@ -61,6 +62,7 @@ void MechanismMarches::plan_events(const std::string& title, const model::StepDe
                                               "reference = \"initial\" measures displacements, and configurations "
                                               "of mechanisms have none; give a number, or leave it out");
   step.locate_events = true;
+  step.locate_sliders = description.locate_events.has_value();
 }
 
 void MechanismMarches::try_estimator(const MarchPlan& plan, const AutomaticStep& step) const {

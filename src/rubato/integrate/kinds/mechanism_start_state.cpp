@@ -102,6 +102,7 @@ void warn_of_pressed_struts(system::MechanismEquations& equations, const system:
   equations.go_to(start, model::Side::right);
   for (std::size_t j = 0; j < laws.size(); ++j) {
     if (!laws[j].is_length() || laws[j].law->memory_size() == 0 || equations.law_force(j) == 0.0) continue;
+    if (laws[j].law->sticking_stiffness() > 0.0) continue;  // friction counts from where it is
     warnings.push_back(
         fmt::format("{} \"{}\" starts with {:.4g} N, since it acts on a strut, where u is the length of {:.6g} m; to "
                     "have it act from "

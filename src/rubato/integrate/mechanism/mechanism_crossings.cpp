@@ -68,7 +68,10 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
     }
     if (crossing.share <= 1.0 && (first.guard < 0 || crossing.share < first.share)) first = crossing;
   }
-  return first;
+  if (!watches_laws_) return first;
+  const Crossing of_law = law_guards_.first_crossing(from, to, least);
+  if (of_law.guard < 0 || (first.guard >= 0 && first.share <= of_law.share)) return first;
+  return {static_cast<Index>(transitions_.size()) + of_law.guard, of_law.share};
 }
 
 }  // namespace rubato::integrate

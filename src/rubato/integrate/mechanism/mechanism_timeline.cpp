@@ -30,10 +30,12 @@ MechanismTimeline::MechanismTimeline(std::unique_ptr<system::MechanismEquations>
   own_ = std::move(own);
 }
 
-MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, double resolution)
+MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws)
     : equations_(equations),
       mechanism_(equations.mechanism()),
       resolution_(resolution),
+      watches_laws_(watches_laws),
+      law_guards_(mechanism_.model(), mechanism_.size(), resolution),
       loads_(loads_of(mechanism_.model())),
       left_(mechanism_.size()),
       right_(mechanism_.size()),
@@ -71,7 +73,10 @@ std::vector<double> MechanismTimeline::breakpoints(double from, double to) const
     switches.insert(switches.end(), pieces.begin(), pieces.end());
   };
   for (const auto& formula : mechanism_.model().joint_formulas) take_law(formula.switches(from, to));
-  for (const auto& law : mechanism_.model().laws) take_law(law.law->breakpoints(from, to));
+  for (const auto& law : mechanism_.model().laws) {
+    take_law(law.law->breakpoints(from, to));
+    if (law.normal.formula) take_law(law.normal.formula->switches(from, to));
+  }
   std::sort(joint_switches_.begin(), joint_switches_.end());
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -220,6 +225,7 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
 
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const auto i = static_cast<std::size_t>(guard);
+  if (i >= transitions_.size()) return law_guards_.guard(guard - static_cast<Index>(transitions_.size()), from, to);
   forget_balances();
   GuardValue value = guard_at(i, to, to.stuck_at);
   if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from, to.stuck_at).value) / (to.t - from.t);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/integrate/mechanism/law_guards.hpp>
 #include <rubato/integrate/timeline.hpp>
 #include <rubato/system/loads.hpp>
 #include <rubato/system/mechanism_equations.hpp>
@@ -21,7 +22,7 @@ struct LockEvent {
 };
 
 /// The timeline of a mechanism: rows of tables of loads and drives, its locks and the friction of its joints: guard i
-/// watches lock i, and after the locks come the frictions.
+/// watches lock i, and after the locks come the frictions, then the laws, where they are watched.
 ///
 ///   open                      sign (at - s)                  the coordinate reaches the lock
 ///   at a stop with stiffness  sign (stiffness (s - at) + damping s')   its force would pull
@@ -32,6 +33,7 @@ struct LockEvent {
 ///   sticks                    mu N - |its multiplier|, both of equilibrium at that instant
 ///   at limit, held by others  nothing: the others are watched
 ///   held by drives that stand a drive that stood when it was left out moves
+///   law                       Law::guard(): it goes on by another formula
 ///
 /// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and
 /// the multipliers of equilibrium. A drive whose prescribed velocity jumps does the same: it gives the impulse, whose
@@ -41,7 +43,8 @@ class MechanismTimeline final : public Timeline {
   /// @param resolution  [s]
   MechanismTimeline(const system::Mechanism& mechanism, double resolution);
   /// @param equations  lent; wherever they are left is well
-  MechanismTimeline(system::MechanismEquations& equations, double resolution);
+  /// @param watches_laws  whether steps end where laws change as well
+  MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws = false);
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
@@ -52,6 +55,8 @@ class MechanismTimeline final : public Timeline {
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 
   const std::vector<LockEvent>& events() const { return events_; }
+  /// Of the laws; null where steps do not end there.
+  LawGuards* law_guards() { return watches_laws_ ? &law_guards_ : nullptr; }
   /// The guard whose transitions had no end, for which pass() failed: a hundred within a thousandth of the run,
   /// between which its coordinate stayed where it was, to 1e-9 of a radian or of the model's size. -1: none.
   Index chattering() const { return chattering_; }
@@ -117,6 +122,8 @@ class MechanismTimeline final : public Timeline {
   system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
   double resolution_;
+  bool watches_laws_;
+  LawGuards law_guards_;
   system::Loads loads_;
   Vector left_, right_;
   std::vector<Index> row_;                            // of the constraint of each lock, or -1

@@ -11,6 +11,7 @@ struct LawPoint;
 struct LawHistory {
   const LawPoint* from = nullptr;  ///< of each: where the step starts in which the motion is; null: it stands there
   const double* memory = nullptr;  ///< of all, at that start
+  double* next = nullptr;          ///< of all: room for that where the motion is, in a step
 };
 
 /// Where a mechanism is, as its elements and joints read it. Nothing is owned.

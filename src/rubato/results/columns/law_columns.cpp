@@ -28,14 +28,16 @@ void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool
     layout.blocks.push_back({"dissipated", "J", "dissipated by a law since the start", dimension, laws});
 }
 
+void add_friction_blocks(const std::vector<std::string>& laws, TableLayout& layout) {
+  if (laws.empty()) return;
+  layout.blocks.push_back({"slip", "m", "slip of a law of friction, u - force/kT", "law_of_friction", laws});
+  layout.blocks.push_back({"normal_force", "N", "what presses on it, 0 where it is open", "law_of_friction", laws});
+}
+
 void LawColumns::add(TableLayout& layout) const {
   for (const bool is_rotation : {false, true})
     add_law_blocks(names_of(is_rotation ? of_rotations_ : of_displacements_), is_rotation, in_motion_, layout);
-  if (of_friction_.empty()) return;
-  layout.blocks.push_back(
-      {"slip", "m", "slip of a law of friction, u - force/kT", "law_of_friction", names_of(of_friction_)});
-  layout.blocks.push_back(
-      {"normal_force", "N", "what presses on it, 0 where it is open", "law_of_friction", names_of(of_friction_)});
+  add_friction_blocks(names_of(of_friction_), layout);
 }
 
 void LawColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {

@@ -11,6 +11,9 @@ namespace rubato::results {
 /// The blocks of some laws: `force` and `displacement`, of those on angles `moment` and `angle`, and `dissipated`.
 void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout);
 
+/// Of laws of friction `slip` and `normal_force`, for those that there are.
+void add_friction_blocks(const std::vector<std::string>& laws, TableLayout& layout);
+
 /// Columns of the laws beside sliders and stops: `force` and `displacement`, of those between rotations `moment` and
 /// `angle`; in a motion `dissipated` since its start as well; of laws of friction `slip` and `normal_force` behind
 /// them.

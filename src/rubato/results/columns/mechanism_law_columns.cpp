@@ -7,6 +7,9 @@ MechanismLawColumns::MechanismLawColumns(system::MechanismEquations& equations, 
     : equations_(equations), in_motion_(in_motion) {
   const auto& laws = equations.mechanism().model().laws;
   for (std::size_t j = 0; j < laws.size(); ++j) (laws[j].is_angle() ? turning_ : sliding_).push_back(j);
+  for (const auto* of : {&sliding_, &turning_})
+    for (const std::size_t j : *of)
+      if (laws[j].law->sticking_stiffness() > 0.0) of_friction_.push_back(j);
   dissipated_ = since_ = Vector::Zero(static_cast<Index>(laws.size()));
 }
 
@@ -17,6 +20,9 @@ void MechanismLawColumns::add(TableLayout& layout) const {
       names.push_back(equations_.mechanism().model().laws[j].name);
     add_law_blocks(names, is_rotation, in_motion_, layout);
   }
+  std::vector<std::string> names;
+  for (const std::size_t j : of_friction_) names.push_back(equations_.mechanism().model().laws[j].name);
+  add_friction_blocks(names, layout);
 }
 
 void MechanismLawColumns::book(const system::State& before, const system::State& after) {
@@ -40,6 +46,11 @@ void MechanismLawColumns::append_since(const system::State& before, const system
       row.push_back(dissipated_[i] + since_[i]);
     }
   }
+  const auto& laws_of_model = equations_.mechanism().model().laws;
+  for (const std::size_t j : of_friction_)
+    row.push_back(equations_.law_displacement(j) -
+                  equations_.law_force(j) / laws_of_model[j].law->sticking_stiffness());
+  for (const std::size_t j : of_friction_) row.push_back(equations_.law_normal(j));
 }
 
 }  // namespace rubato::results

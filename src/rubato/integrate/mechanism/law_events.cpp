@@ -1,0 +1,56 @@
+#include <rubato/integrate/law_changes.hpp>
+#include <rubato/integrate/mechanism/law_events.hpp>
+
+#include <algorithm>
+
+namespace rubato::integrate {
+
+MechanismLawEvents::MechanismLawEvents(system::MechanismEquations& equations, const system::State& start,
+                                       LawGuards* located)
+    : equations_(equations), located_(located) {
+  equations_.go_to(start, model::Side::left);
+  for (const model::MechanismLaw& law : equations.mechanism().model().laws) {
+    if (!(law.law->sticking_stiffness() > 0.0)) continue;
+    events_.parts.push_back(law.name);
+    watched_.push_back({law.index, equations_.law_contact(static_cast<std::size_t>(law.index))});
+  }
+}
+
+void MechanismLawEvents::note(std::size_t part, model::Law::Contact now, double t) {
+  Watched& one = watched_[part];
+  if (now == one.branch) return;
+  tell_law_changes(one.branch, now, [&](Change change) { events_.add({t, part, change}); });
+  one.branch = now;
+}
+
+bool MechanismLawEvents::accepted(const system::State& before, const system::State& after) {
+  if (watched_.empty()) return true;
+  if (!located_) equations_.go_to(after, model::Side::left);
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const Index law = watched_[i].law;
+    if (!located_) {
+      note(i, equations_.law_contact(static_cast<std::size_t>(law)), after.t);
+      continue;
+    }
+    // A load that jumps, or rises from zero, changes it where a step begins.
+    note(i, located_->contact(law, before, after, false), before.t);
+    note(i, located_->contact(law, before, after, true), after.t);
+  }
+  return true;
+}
+
+void MechanismLawEvents::add_to(Events& events) const {
+  const std::size_t first = events.parts.size();
+  events.parts.insert(events.parts.end(), events_.parts.begin(), events_.parts.end());
+  const auto known = static_cast<std::ptrdiff_t>(events.all.size());
+  for (Event event : events_.all) {
+    event.part += first;
+    events.add(event);
+  }
+  events.left_out += events_.left_out;
+  const auto begin = events.all.begin() + static_cast<std::ptrdiff_t>(events.at_start);
+  std::inplace_merge(begin, events.all.begin() + known, events.all.end(),
+                     [](const Event& a, const Event& b) { return a.t < b.t; });
+}
+
+}  // namespace rubato::integrate
