@@ -71,7 +71,8 @@ TEST(MechanismMessages, CallEventsInTheTableAsTheCommandDoes) {
   const MechanismStudy ran(cart);
   ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
   const auto& events = ran.table("run.events");
-  EXPECT_THAT(events.layout.blocks[2].categories, ElementsAre("lets_go", "locks", "slips", "sticks"));
+  EXPECT_THAT(events.layout.blocks[2].categories,
+              ElementsAre("lets_go", "locks", "slips", "sticks", "opens", "closes"));
   ASSERT_EQ(events.rows.size(), 2u);
   EXPECT_EQ(events.rows[0][2], 1.0);
   EXPECT_EQ(events.rows[1][2], 0.0);

@@ -42,6 +42,7 @@ bool MechanismLawEvents::accepted(const system::State& before, const system::Sta
 void MechanismLawEvents::add_to(Events& events) const {
   const std::size_t first = events.parts.size();
   events.parts.insert(events.parts.end(), events_.parts.begin(), events_.parts.end());
+  if (!events.places.empty()) events.places.resize(events.parts.size(), 0);
   const auto known = static_cast<std::ptrdiff_t>(events.all.size());
   for (Event event : events_.all) {
     event.part += first;
