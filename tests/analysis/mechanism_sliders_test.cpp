@@ -192,6 +192,29 @@ TEST(SliderOfAMechanism, IsPressedByTheStopOfAJoint) {
   EXPECT_GT(largest, 1.0);
 }
 
+TEST(SliderOfAMechanism, TellsItsEventsBesideThoseOfSeveralLocks) {
+  const TwoMasses study{
+      automatic(1e-5),
+      by_time +
+          "[[joint]]\nname = \"rail\"\ntype = \"prismatic\"\nbetween = [\"ground\", \"z\"]\nat = [0.0, "
+          "1.0]\naxis = [1.0, 0.0]\nlock = [{ at = 0.2, kind = \"stop\", stiffness = 5.0 }, "
+          "{ at = -0.4, kind = \"stop\", stiffness = 5.0 }]\n"};
+  const MechanismStudy ran(study.mechanism());
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& rows = ran.table("run.events");
+  int of_slider = 0, of_locks = 0;
+  double before = 0.0;
+  for (const auto& row : rows.rows) {
+    const bool is_slider = row[rows.column("joint", "")] == 2.0;
+    (is_slider ? of_slider : of_locks) += 1;
+    EXPECT_EQ(row[rows.column("lock", "")] == 0.0, is_slider);
+    EXPECT_GE(row[rows.column("time", "")], before);
+    before = row[rows.column("time", "")];
+  }
+  EXPECT_GT(of_slider, 5);
+  EXPECT_GT(of_locks, 3);
+}
+
 TEST(SliderOfAMechanism, StandsWhereTheStructureDoes) {
   const std::string statics = "[[analysis]]\nname = \"run\"\ntype = \"static\"\n";
   for (const double mu : {0.2, 0.6, 3.0}) {
