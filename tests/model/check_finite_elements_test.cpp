@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <rubato/model/description.hpp>
 #include <rubato/model/finite_elements/check_finite_elements.hpp>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 // A bar of cubes in space: struts between neighbouring nodes of a lattice, point masses at them. Struts do not resist
@@ -164,6 +166,84 @@ TEST(HeldRows, OfAPenaltyAreLeftOut) {
   EXPECT_EQ(std::count(joined.is_held.begin(), joined.is_held.end(), 1), 4);
   ASSERT_EQ(joined.notes.size(), 1u);
   EXPECT_NE(joined.notes[0].find("12 rows, the first 1.x"), std::string::npos);
+}
+
+/// Two beam elements of length 1 along x, in bending: y and rz of three nodes, with the matrices of Hermite's cubics.
+FiniteElementFiles beam() {
+  FiniteElementFiles files;
+  Eigen::Matrix4d k, m;
+  k << 12, 6, -12, 6, 6, 4, -6, 2, -12, -6, 12, -6, 6, 2, -6, 4;
+  m << 156, 22, 54, -13, 22, 4, 13, -3, 54, 13, 156, -22, -13, -3, -22, 4;
+  Matrix stiffness = Matrix::Zero(6, 6), mass = stiffness;
+  for (Index first : {0, 2}) {
+    stiffness.block<4, 4>(first, first) += k;
+    mass.block<4, 4>(first, first) += m / 420.0;
+  }
+  files.stiffness.values = stiffness.sparseView();
+  files.mass.values = mass.sparseView();
+  for (int node = 1; node <= 3; ++node)
+    for (const int direction : {2, 6}) {
+      files.stiffness.labels.push_back({node, direction});
+      files.mass.labels.push_back({node, direction});
+    }
+  files.mesh.emplace();
+  files.mesh->nodes = {1, 2, 3};
+  files.mesh->positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  files.mesh->elements = {{1, "B21", 0, 2}, {2, "B21", 2, 2}};
+  files.mesh->element_nodes = {0, 1, 1, 2};
+  return files;
+}
+
+/// Without the rows y of its ends.
+FiniteElementFiles hinged_beam() {
+  FiniteElementFiles files = beam();
+  const std::vector<Index> kept{1, 2, 3, 5};
+  for (FiniteElementMatrix* matrix : {&files.stiffness, &files.mass}) {
+    const Matrix whole = matrix->values;
+    matrix->values = Matrix(whole(kept, kept)).sparseView();
+    matrix->labels = {{1, 6}, {2, 2}, {2, 6}, {3, 6}};
+  }
+  return files;
+}
+
+std::vector<DoubtfulValue> doubts_of(FiniteElementFiles files, const std::vector<double>& gravity) {
+  ModelDescription description;
+  description.finite_elements = std::make_shared<const FiniteElements>(join_finite_elements(std::move(files)));
+  description.gravity.emplace();
+  for (const double value : gravity) description.gravity->acceleration.emplace_back(value);
+  return doubtful_values(description, {});
+}
+
+TEST(HeldNodes, MayTurn) {
+  const FiniteElements joined = join_finite_elements(hinged_beam());
+  EXPECT_EQ(joined.freedoms[0][1], Freedom::held);
+  EXPECT_EQ(joined.freedoms[0][5], Freedom::free);
+  EXPECT_EQ(joined.freedoms[0][2], Freedom::absent);  // a beam in the plane
+  EXPECT_EQ(joined.freedoms[1][1], Freedom::free);
+  const auto findings = check_finite_elements(joined);
+  EXPECT_TRUE(findings.doubts.empty()) << findings.doubts.front().message;
+  EXPECT_TRUE(tells(findings, "held in part, for lack of a row: x at 3 nodes, y at 2 nodes"));
+}
+
+TEST(GravityOfHeldNodes, IsMissingWhereAHingeHoldsThemAlongIt) {
+  const auto doubts = doubts_of(hinged_beam(), {0.0, -9.81, 0.0});
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_NE(doubts[0].message.find("the share of 2 nodes, the first 1, in the consistent mass"), std::string::npos);
+  EXPECT_TRUE(doubts_of(beam(), {0.0, -9.81, 0.0}).empty());
+  EXPECT_TRUE(doubts_of(hinged_beam(), {0.0, 0.0, -9.81}).empty());
+}
+
+TEST(GravityOfHeldNodes, IsThereWhereALargeDiagonalHoldsThem) {
+  FiniteElementFiles files = beam();
+  const Matrix mass = files.mass.values;
+  for (const Index row : {0, 4}) files.stiffness.values.coeffRef(row, row) = 1e36;
+  const FiniteElements joined = join_finite_elements(files);
+  ASSERT_EQ(joined.rows.size(), 4u);
+  EXPECT_EQ(joined.freedoms[0][1], Freedom::held_in_files);
+  // The row y of the middle: with its own 312/420 the whole of an element's mass, 1.
+  EXPECT_NEAR(joined.mass_of_held(1, 1), 108.0 / 420.0, 1e-15);
+  EXPECT_NEAR(joined.mass_of_held(0, 1), mass(1, 0), 1e-15);
+  EXPECT_TRUE(doubts_of(files, {0.0, -9.81, 0.0}).empty());
 }
 
 }  // namespace

@@ -150,8 +150,7 @@ class Builder {
       for (std::size_t axis = 0; axis < 6; ++axis) {
         const Index row = files_.places[node][axis];
         places[axis] = row == ground ? ground : place_[static_cast<std::size_t>(row)];
-        // A node that an element has and that has no row in a direction is held in it.
-        if (row == ground && !is_rotation(axis) && files_.mesh)
+        if (files_.mesh && is_held(files_.freedoms[node][axis]))
           built_.fixed.push_back(fmt::format("{}.{}", structure.names.back(), axis_names[axis]));
       }
       structure.places.push_back(places);
@@ -190,14 +189,15 @@ class Builder {
     take_inertia();
   }
 
-  /// Of all rows, those that supports hold too: they move with the others where the ground does.
+  /// Of all rows, those too that supports or a large diagonal hold: they move with the others where the ground does.
   void take_inertia() {
     const auto n = static_cast<Index>(files_.rows.size());
     Eigen::Matrix<double, Eigen::Dynamic, 3> moved = Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(n, 3);
     for (Index i = 0; i < n; ++i)
       if (const int direction = files_.rows[static_cast<std::size_t>(i)].direction; direction >= 1 && direction <= 3)
         moved(i, direction - 1) = 1.0;
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> force = files_.mass.values * moved + added_.asDiagonal() * moved;
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> force =
+        files_.mass.values * moved + added_.asDiagonal() * moved + files_.mass_of_held;
     built_.matrices.inertia.setZero(size_, 3);
     for (Index i = 0; i < n; ++i)
       if (const Index place = place_[static_cast<std::size_t>(i)]; place != ground)

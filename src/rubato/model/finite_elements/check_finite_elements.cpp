@@ -1,4 +1,5 @@
 #include <rubato/model/finite_elements/check_finite_elements.hpp>
+#include <rubato/model/finite_elements/freedoms.hpp>
 #include <rubato/model/finite_elements/rigid_motions.hpp>
 #include <rubato/model/structure.hpp>
 #include <rubato/numerics/eigen_symmetric.hpp>
@@ -116,16 +117,21 @@ class Checker {
 
   void tell_held() {
     std::vector<std::int64_t> held;
-    std::size_t partly = 0;
+    std::array<std::size_t, 6> partly{};
     for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
       if (model_.is_held[i] != 0)
         held.push_back(model_.nodes[i]);
       else
-        partly += is_partly_held(model_, i) ? 1 : 0;
+        for (std::size_t axis = 0; axis < 6; ++axis) partly[axis] += is_held(model_.freedoms[i][axis]) ? 1 : 0;
     }
-    if (partly > 0) fact(fmt::format("{} nodes have no row in some of x, y, z: they are held there", partly));
+    std::vector<std::string> directions;
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      if (partly[axis] > 0)
+        directions.push_back(
+            fmt::format("{} at {} node{}", axis_names[axis], partly[axis], partly[axis] == 1 ? "" : "s"));
+    if (!directions.empty()) fact(fmt::format("held in part, for lack of a row: {}", fmt::join(directions, ", ")));
     if (held.empty()) {
-      if (model_.mesh && partly == 0) fact("no node is held");
+      if (model_.mesh && directions.empty()) fact("no node is held");
       return;
     }
     std::string set;
@@ -134,8 +140,9 @@ class Checker {
       std::sort(sorted.begin(), sorted.end());
       if (sorted == held) set = fmt::format(", those of {}", one.name);
     }
-    fact(fmt::format("{} nodes are held: elements have them, and no row does{}", held.size(),
-                     set.empty() ? fmt::format(" (the first is {})", held.front()) : set));
+    if (set.empty()) set = fmt::format(" (the first is {})", held.front());
+    fact(held.size() == 1 ? fmt::format("1 node is held: an element has it, and no row does{}", set)
+                          : fmt::format("{} nodes are held: elements have them, and no row does{}", held.size(), set));
   }
 
   void tell_mass() {
@@ -147,11 +154,13 @@ class Checker {
     mass_ = mass.maxCoeff(&most);
     if (!(mass_ > 0.0)) return;
     const bool is_even = mass.minCoeff() > mass_ * (1.0 - 1e-6);
-    const bool is_held = std::any_of(model_.is_held.begin(), model_.is_held.end(), [](char h) { return h != 0; });
+    const bool is_any_held = std::any_of(model_.freedoms.begin(), model_.freedoms.end(), [](const auto& freedoms) {
+      return std::any_of(freedoms.begin(), freedoms.end(), [](Freedom freedom) { return is_held(freedom); });
+    });
     fact(fmt::format("mass of the rows {} kg{}",
                      is_even ? fmt::format("{:.9g}", mass_) : "along x, y, z " + listed(mass),
-                     is_held ? " (without the share of held nodes)" : ""));
-    if (!is_even && !is_held && !has_partly_held())
+                     is_any_held ? " (without the share of held nodes)" : ""));
+    if (!is_even && !is_any_held)
       doubt(model_.mass.where,
             fmt::format("the mass is {} kg along x, y and z, and nothing is held: are the rows of the "
                         "mass matrix in another order than \"{}\" says?",
@@ -169,12 +178,6 @@ class Checker {
     fact(fmt::format("centre of gravity {} m; inertia about it {} kg m2, products {}", listed(centre),
                      listed(turn.diagonal()),
                      listed(Axis(-turn(0, 1), -turn(1, 2), -turn(0, 2)), turn.diagonal().maxCoeff())));
-  }
-
-  bool has_partly_held() const {
-    for (std::size_t i = 0; i < model_.nodes.size(); ++i)
-      if (is_partly_held(model_, i)) return true;
-    return false;
   }
 
   Axis position(std::size_t row) const {

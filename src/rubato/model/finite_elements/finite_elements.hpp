@@ -113,6 +113,15 @@ struct FiniteElementFiles {
   Location where;
 };
 
+/// What the matrices have of a direction of a node.
+enum class Freedom : char {
+  absent,        ///< no row, and the elements of the node know no such motion
+  free,          ///< a row
+  held,          ///< no row, though an element of the node moves so
+  held_in_files  ///< held by a large entry on the diagonal: its share of the mass is known
+};
+inline bool is_held(Freedom freedom) { return freedom == Freedom::held || freedom == Freedom::held_in_files; }
+
 /// A finite element model whose parts belong together: all matrices have the same rows.
 struct FiniteElements {
   FiniteElementMatrix stiffness, mass;
@@ -122,6 +131,8 @@ struct FiniteElements {
   std::vector<std::array<double, 3>> positions;  ///< [p] [m]; empty where no file tells them
   std::vector<std::array<Index, 6>> places;      ///< row of each direction of a node, or `ground` [p]
   std::vector<char> is_held;                     ///< whether an element of the mesh has the node and no row does [p]
+  std::vector<std::array<Freedom, 6>> freedoms;  ///< of each direction of a node [p]
+  Matrix mass_of_held;  ///< what a unit motion of what a large diagonal holds along x, y, z costs each row [n x 3] [kg]
   std::optional<Mesh> mesh;
   std::vector<std::string> notes;  ///< what was concluded from the files, for people
   Location where;

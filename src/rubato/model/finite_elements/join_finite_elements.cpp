@@ -1,4 +1,5 @@
 #include <rubato/model/finite_elements/finite_elements.hpp>
+#include <rubato/model/finite_elements/freedoms.hpp>
 #include <rubato/model/structure.hpp>
 
 #include <fmt/format.h>
@@ -41,6 +42,7 @@ class Joiner {
     built_.mesh = std::move(files_.mesh);
     built_.rows = std::move(rows_);
     built_.where = files_.where;
+    built_.freedoms = freedoms_of(built_, held_in_files_);
     return std::move(built_);
   }
 
@@ -143,11 +145,13 @@ class Joiner {
         first = name_of(rows_[static_cast<std::size_t>(i)]);
     }
     const std::size_t dropped = rows_.size() - kept.size();
+    built_.mass_of_held = Matrix::Zero(diagonal.size(), 3);
     if (dropped == 0) return;
     if (kept.empty())
       throw InvalidInput(files_.stiffness.where,
                          fmt::format("every row of \"{}\" is held by a large number on its diagonal ({} and more)",
                                      files_.stiffness.file, held_by_penalty));
+    take_mass_of_held(kept);
     for (FiniteElementMatrix* matrix : {&files_.stiffness, &files_.mass, files_.damping ? &*files_.damping : nullptr}) {
       if (!matrix) continue;
       std::vector<int> place(rows_.size(), -1);
@@ -168,6 +172,24 @@ class Joiner {
         fmt::format("{} rows, the first {}, have a diagonal entry of {} or more: they count as held, "
                     "and are left out",
                     dropped, first, held_by_penalty));
+  }
+
+  /// Rows that are left out push those that stay where all nodes move alike.
+  void take_mass_of_held(const std::vector<Index>& kept) {
+    std::vector<char> stays(rows_.size(), 0);
+    for (const Index i : kept) stays[static_cast<std::size_t>(i)] = 1;
+    Matrix share = Matrix::Zero(static_cast<Index>(rows_.size()), 3);
+    for (std::size_t j = 0; j < rows_.size(); ++j) {
+      if (stays[j] != 0) continue;
+      held_in_files_.push_back(rows_[j]);
+      const int direction = rows_[j].direction;
+      if (direction < 1 || direction > 3) continue;
+      for (SparseMatrix::InnerIterator entry(files_.mass.values, static_cast<Index>(j)); entry; ++entry)
+        share(entry.row(), direction - 1) += entry.value();
+    }
+    std::sort(held_in_files_.begin(), held_in_files_.end());
+    built_.mass_of_held.resize(static_cast<Index>(kept.size()), 3);
+    for (std::size_t i = 0; i < kept.size(); ++i) built_.mass_of_held.row(static_cast<Index>(i)) = share.row(kept[i]);
   }
 
   void require_unique_rows() const {
@@ -278,6 +300,7 @@ class Joiner {
   FiniteElementFiles files_;
   FiniteElements built_;
   std::vector<RowLabel> rows_;
+  std::vector<RowLabel> held_in_files_;
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <rubato/model/finite_elements/freedoms.hpp>
 #include <rubato/model/finite_elements/rigid_motions.hpp>
 
 #include <Eigen/Dense>
@@ -34,12 +35,6 @@ Matrix rigid_motions(const FiniteElements& model, const Axis& about) {
     }
   }
   return motions;
-}
-
-bool is_partly_held(const FiniteElements& model, std::size_t node) {
-  const auto& places = model.places[node];
-  const auto free = std::count_if(places.begin(), places.begin() + 3, [](Index row) { return row != ground; });
-  return free == 1 || free == 2;
 }
 
 std::vector<Index> rows_far_from_held(const FiniteElements& model) {

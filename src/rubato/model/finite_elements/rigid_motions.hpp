@@ -13,9 +13,6 @@ namespace rubato::model {
 /// the positions.
 Matrix rigid_motions(const FiniteElements& model, const Axis& about = Axis::Zero());
 
-/// Whether a node has a row in some of x, y, z and not in others.
-bool is_partly_held(const FiniteElements& model, std::size_t node);
-
 /// Rows of nodes that share no element with a node that is held, wholly or in part. Without elements: all rows where no
 /// node is held, else none.
 std::vector<Index> rows_far_from_held(const FiniteElements& model);
