@@ -313,9 +313,68 @@ TEST(FiniteElementFindings, DoubtMatricesOfOneProgramWithOtherPatterns) {
   for (const char* file : {"brick.inp", "brick.sti", "brick.dof"}) folder.write(file, content(file));
   folder.write("brick.mas", with("brick.mas", "1 4  6.6088734567901e-02\n", ""));
   const auto findings = model::check_finite_elements(*read(calculix, folder.path()));
-  ASSERT_EQ(findings.doubts.size(), 1u);
+  ASSERT_EQ(findings.doubts.size(), 2u);
   EXPECT_NE(findings.doubts[0].message.find("\"brick.mas\" has 77 entries and \"brick.sti\" has 78"),
             std::string::npos);
+  // What is missing along x is there along y and z.
+  EXPECT_NE(findings.doubts[1].message.find("that of solids is the same along all"), std::string::npos);
+}
+
+TEST(NodesOfATable, MayBeWrittenAsFloatingPointNumbers) {
+  const std::string text = with("brick_map.csv", "2,3,2,", "2.0,3.000000000000000000e+00,2.0e0,");
+  EXPECT_EQ(verdict_on("brick_map.csv", text, formats[1].files), "accepted");
+  expect_says(verdict_on("brick_map.csv", with("brick_map.csv", "2,3,2,", "2,3.25e+00,2,"), formats[1].files),
+              "brick_map.csv:3", "a node must be a whole number from 1 on, got \"3.25e+00\"");
+  const std::string tens = with("brick_map.csv", "2,3,2,", "2,1.200000000000000000e+01,2,");
+  // It is node 12, whose y another row has.
+  expect_says(verdict_on("brick_map.csv", tens, formats[1].files), "brick_map.csv:9", "row 8 is 12.y");
+}
+
+TEST(RowsWithoutNames, AreNotGuessedBesideRowsWithNames) {
+  const std::string files = "mesh = \"brick.inp\"\nstiffness = \"brick_STIF1_input.mtx\"\nmass = \"brick_mass.mtx\"\n";
+  expect_says(verdict_on("", "", files), "study.toml:4:8", "\"brick_mass.mtx\" does not tell what its rows are");
+  EXPECT_EQ(verdict_on("", "", files + "rows = \"brick.dof\"\n"), "accepted");
+}
+
+TEST(NamesOfMatrices, MustNotContradictWhatTheyAreTakenFor) {
+  const std::string named = formats[5].files;
+  expect_says(verdict_on("", "", named + "stiffness_name = \"MAAX\"\n"), "study.toml:5:18", "are the names exchanged?");
+  const std::string pch = content("brick.pch");
+  const std::size_t second = pch.find("MAAX");
+  ASSERT_NE(second, std::string::npos);
+  const std::string mass_alone = pch.substr(pch.rfind('\n', second) + 1);
+  expect_says(verdict_on("brick.pch", mass_alone, named), "brick.pch", "the only matrix of the file is \"MAAX\"");
+}
+
+TEST(FiniteElementFindings, DoubtMatricesThatAreEqualOrExchanged) {
+  const auto doubts = [](const std::string& k, const std::string& m) {
+    const auto findings = model::check_finite_elements(
+        *read("mesh = \"brick.inp\"\nstiffness = \"" + k + "\"\nmass = \"" + m + "\"\nrows = \"brick.dof\"\n"));
+    std::string all;
+    for (const auto& doubt : findings.doubts) all += doubt.message + "\n";
+    return all;
+  };
+  EXPECT_NE(doubts("brick.mas", "brick.mas").find("are the same"), std::string::npos);
+  EXPECT_NE(doubts("brick.mas", "brick.sti").find("exchanged"), std::string::npos);
+  EXPECT_EQ(doubts("brick.sti", "brick.mas"), "");
+}
+
+TEST(DampingMatrices, MayLackRows) {
+  const auto c = [](const std::string& text, const std::string& rows = "brick.dof") {
+    const ScratchFolder folder("finite-elements-damping");
+    for (const char* file : {"brick.inp", "brick.sti", "brick.mas", "brick.dof"}) folder.write(file, content(file));
+    folder.write("c", text);
+    return Matrix(read("mesh = \"brick.inp\"\nstiffness = \"brick.sti\"\nmass = \"brick.mas\"\nrows = \"" + rows +
+                           "\"\ndamping = \"c\"\n",
+                       folder.path())
+                      ->damping->values);
+  };
+  for (const Matrix& got : {c("1 1 2.5\n"), c("3,1, 3,1, 2.5\n"),
+                            c("%%MatrixMarket matrix coordinate real symmetric\n12 12 1\n1 1 2.5\n")}) {
+    ASSERT_EQ(got.rows(), 12);
+    EXPECT_EQ(got(0, 0), 2.5);
+    EXPECT_EQ(got.norm(), 2.5);
+  }
 }
 
 }  // namespace

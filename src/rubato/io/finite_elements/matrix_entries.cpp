@@ -116,8 +116,9 @@ void MatrixEntries::sort_by_labels(model::FiniteElementMatrix& matrix) {
 
 MatrixEntries::Fault MatrixEntries::fold(model::FiniteElementMatrix& matrix) {
   if (entries_.empty()) return {"the file has no entries but zeros"};
-  const int n = std::max(size, size_);
-  if (static_cast<std::size_t>(n) > entries_.size())
+  int n = std::max(size, size_);
+  if (size == 0 && labels_.empty()) n = std::max(n, empty_rows);
+  if (n > empty_rows && static_cast<std::size_t>(n) > entries_.size())
     return {fmt::format("a matrix of {} rows has only {} entries that are not zero; each row needs one on the diagonal",
                         n, entries_.size())};
   if (!labels_.empty()) sort_by_labels(matrix);

@@ -23,7 +23,8 @@ class MatrixEntries {
   explicit MatrixEntries(std::string place) : place_(std::move(place)) {}
 
   Triangle triangle = Triangle::undeclared;
-  int size = 0;  ///< as the file announces it; else as the entries tell
+  int size = 0;        ///< as the file announces it; else as the entries tell
+  int empty_rows = 0;  ///< rows that it may have without an entry on the diagonal: as many as the stiffness matrix has
   int digits = 16;
   std::string remedy = "";  ///< what to do where the matrix is not symmetric
 

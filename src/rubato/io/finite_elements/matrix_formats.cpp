@@ -76,14 +76,32 @@ std::span<const MatrixFormat> matrix_formats() { return formats; }
 std::string chosen_matrix(const MatrixSource& source, const std::vector<std::string>& names) {
   std::vector<std::string> fitting;
   const char initial = source.kind == "stiffness" ? 'K' : source.kind == "mass" ? 'M' : 'B';
-  for (const std::string& name : names) {
-    if (name == source.matrix) return name;
+  for (const std::string& name : names)
     if (name.front() == initial && !name.starts_with("K4")) fitting.push_back(name);
+  const auto contradicts = [&](const std::string& name) {
+    return (source.kind == "stiffness" && name.front() == 'M') || (source.kind == "mass" && name.front() == 'K');
+  };
+  if (!source.matrix.empty()) {
+    if (std::find(names.begin(), names.end(), source.matrix) == names.end())
+      throw InvalidInput(source.matrix_where, fmt::format("\"{}\" holds no matrix \"{}\"{}", source.place,
+                                                          source.matrix, suggestion(source.matrix, names)));
+    if (contradicts(source.matrix) && !fitting.empty())
+      throw InvalidInput(
+          source.matrix_where,
+          fmt::format("{}_name is \"{}\", which is the name of a {} matrix, and the file has \"{}\"; "
+                      "are the names exchanged?",
+                      source.kind, source.matrix, initial == 'K' ? "mass" : "stiffness", fitting.front()));
+    return source.matrix;
   }
-  if (!source.matrix.empty())
-    throw InvalidInput(source.matrix_where, fmt::format("\"{}\" holds no matrix \"{}\"{}", source.place, source.matrix,
-                                                        suggestion(source.matrix, names)));
-  if (names.size() == 1) return names.front();
+  if (names.size() == 1) {
+    if (contradicts(names.front()))
+      throw InvalidInput(
+          {source.place, 0, 0},
+          fmt::format("the only matrix of the file is \"{}\", the name of a {} matrix, and [model] takes "
+                      "it as the {}; name the other file, or, if it is that, give {}_name = \"{}\"",
+                      names.front(), initial == 'K' ? "mass" : "stiffness", source.kind, source.kind, names.front()));
+    return names.front();
+  }
   if (fitting.size() == 1) return fitting.front();
   throw InvalidInput({source.place, 0, 0},
                      fmt::format("the file holds {} matrices, and which is the {} is not clear; give [model] "

@@ -39,7 +39,7 @@ const MatrixFormat& format_of(std::string_view text, const std::string& word, co
 }
 
 model::FiniteElementMatrix read_matrix(const FiniteElementFileDescription::MatrixFile& file, const std::string& kind,
-                                       const std::string& format, const StudyFolder& folder) {
+                                       const std::string& format, const StudyFolder& folder, Index empty_rows = 0) {
   const std::string text = folder.read(file.file, file.where, largest_matrix, fmt::format("the {} matrix", kind));
   const MatrixSource source{text, folder.place_of(file.file), kind, file.matrix, file.matrix_where};
   refuse_binary(text, source.place,
@@ -47,6 +47,7 @@ model::FiniteElementMatrix read_matrix(const FiniteElementFileDescription::Matri
                 ".op2, .sim); export them so");
   const MatrixFormat& chosen = format_of(text, format, source.place);
   MatrixEntries entries(source.place);
+  entries.empty_rows = static_cast<int>(empty_rows);
   const auto read = [&] { chosen.read(source, entries); };
   read();
   model::FiniteElementMatrix matrix = entries.matrix(read);
@@ -73,7 +74,8 @@ void read_mesh(const FiniteElementFileDescription& files, const StudyFolder& fol
   }
   parts.stiffness = read_matrix(files.stiffness, "stiffness", files.format, folder);
   parts.mass = read_matrix(files.mass, "mass", files.format, folder);
-  if (!files.damping.file.empty()) parts.damping = read_matrix(files.damping, "damping", files.format, folder);
+  if (!files.damping.file.empty())
+    parts.damping = read_matrix(files.damping, "damping", files.format, folder, parts.stiffness.values.rows());
   to = std::make_shared<const model::FiniteElements>(model::join_finite_elements(std::move(parts)));
 }
 

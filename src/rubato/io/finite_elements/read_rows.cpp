@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <unordered_map>
 
 namespace rubato::io {
@@ -26,10 +27,22 @@ bool whole(std::string_view text, std::int64_t& number) {
   return fault == std::errc() && end == text.data() + text.size();
 }
 
+/// A whole number as tables write it, also as 10.0 or 1.0e+01.
+bool integral(std::string_view text, std::int64_t& number) {
+  if (whole(text, number)) return true;
+  constexpr double largest = 9e15;
+  double value = 0.0;
+  if (text.find_first_of(".eEdD") == std::string_view::npos || !fortran_number(text, value) ||
+      !(std::abs(value) < largest) || value != std::floor(value))
+    return false;
+  number = static_cast<std::int64_t>(value);
+  return true;
+}
+
 /// A direction as a number, as in the study (x, rx) or as Ansys has it (UX, ROTX); -1: none of them.
 int direction_of(std::string_view text) {
   std::int64_t number = 0;
-  if (whole(text, number)) return number >= 0 && number <= 6 ? static_cast<int>(number) : -1;
+  if (integral(text, number)) return number >= 0 && number <= 6 ? static_cast<int>(number) : -1;
   static constexpr std::array<std::array<const char*, 2>, 6> words{
       {{"x", "ux"}, {"y", "uy"}, {"z", "uz"}, {"rx", "rotx"}, {"ry", "roty"}, {"rz", "rotz"}}};
   const std::string word = lower(text);
@@ -153,10 +166,10 @@ model::RowTable read_table(std::string_view text, const std::string& place) {
       return fields[static_cast<std::size_t>(std::find(columns.begin(), columns.end(), column) - columns.begin())];
     };
     std::int64_t row = 0;
-    if (!whole(field(0), row))
+    if (!integral(field(0), row))
       throw InvalidInput(here, fmt::format("a row must be a whole number, got \"{}\"", excerpt(field(0))));
     RowLabel label{0, direction_of(field(2))};
-    (void)whole(field(1), label.node);
+    if (!integral(field(1), label.node)) label.node = 0;
     require_row(label, here, field(1), field(2));
     rows.add(row, label, here);
     if (columns.size() == 6)

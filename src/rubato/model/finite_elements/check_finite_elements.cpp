@@ -32,6 +32,7 @@ class Checker {
     tell_matrices();
     judge_entries(model_.stiffness, "stiffness");
     judge_entries(model_.mass, "mass");
+    doubt_equal_matrices();
     tell_held();
     tell_mass();
     if (!model_.positions.empty()) {
@@ -113,6 +114,17 @@ class Checker {
                       diagonal[column], kind));
   }
 
+  void doubt_equal_matrices() {
+    const SparseMatrix& k = model_.stiffness.values;
+    const SparseMatrix& m = model_.mass.values;
+    if (k.nonZeros() != m.nonZeros() || SparseMatrix(k - m).norm() != 0.0) return;
+    doubt(
+        model_.mass.where,
+        fmt::format("the mass matrix \"{}\" and the stiffness matrix \"{}\" are the same, so that all eigenvalues are "
+                    "1: is a file named twice?",
+                    model_.mass.file, model_.stiffness.file));
+  }
+
   bool is_lumped() const { return model_.mass.values.nonZeros() == model_.mass.values.rows(); }
 
   void tell_held() {
@@ -165,6 +177,7 @@ class Checker {
             fmt::format("the mass is {} kg along x, y and z, and nothing is held: are the rows of the "
                         "mass matrix in another order than \"{}\" says?",
                         listed(mass), model_.stiffness.file));
+    doubt_uneven_solid(mass);
     if (model_.positions.empty()) return;
     Axis centre;
     for (Index k = 0; k < 3; ++k) {
@@ -178,6 +191,25 @@ class Checker {
     fact(fmt::format("centre of gravity {} m; inertia about it {} kg m2, products {}", listed(centre),
                      listed(turn.diagonal()),
                      listed(Axis(-turn(0, 1), -turn(1, 2), -turn(0, 2)), turn.diagonal().maxCoeff())));
+  }
+
+  /// Solids that hold their nodes in all directions or in none move as much mass along x as along y and z.
+  void doubt_uneven_solid(const Axis& mass) {
+    constexpr double even = 0.01;
+    if (mass.minCoeff() > 0.0 && mass.minCoeff() > mass_ * (1.0 - even)) return;
+    const bool has_other_rows = std::any_of(model_.rows.begin(), model_.rows.end(),
+                                            [](const RowLabel& row) { return row.direction < 1 || row.direction > 3; });
+    bool is_any_held = false;
+    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
+      const auto& freedoms = model_.freedoms[i];
+      if (is_partly_held(model_, i) || std::count(freedoms.begin(), freedoms.begin() + 3, Freedom::absent) > 0) return;
+      is_any_held |= model_.is_held[i] != 0;
+    }
+    if (has_other_rows || !is_any_held) return;
+    doubt(model_.mass.where,
+          fmt::format("the mass is {} kg along x, y and z, and that of solids is the same along all: are \"{}\" and "
+                      "\"{}\" exchanged, or the rows in another order?",
+                      listed(mass), model_.mass.file, model_.stiffness.file));
   }
 
   Axis position(std::size_t row) const {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace rubato::model {
@@ -68,6 +69,7 @@ class Joiner {
                                                    "\"...\": the .dof file of CalculiX, or a table with the columns "
                                                    "row, node, direction",
                                                    k.file));
+    if (!files_.mass.labels.empty()) refuse_mixed_names(k, files_.mass);
     const auto& nodes = files_.mesh->nodes;
     if (3 * nodes.size() != n)
       throw InvalidInput(files_.where,
@@ -88,6 +90,7 @@ class Joiner {
     const FiniteElementMatrix& k = files_.stiffness;
     const auto n = static_cast<Index>(rows_.size());
     if (matrix.labels.empty()) {
+      if (!k.labels.empty() && !files_.rows) refuse_mixed_names(matrix, k);
       // A table's rows are those of every matrix that names none.
       const std::vector<RowLabel>& rows = files_.rows ? files_.rows->labels : rows_;
       if (matrix.values.rows() != static_cast<Index>(rows.size()))
@@ -101,6 +104,11 @@ class Joiner {
     std::vector<RowLabel> mine = matrix.labels, other = rows_;
     std::sort(mine.begin(), mine.end());
     std::sort(other.begin(), other.end());
+    const bool may_lack_rows = &matrix != &files_.mass;
+    if (may_lack_rows && mine != other && std::includes(other.begin(), other.end(), mine.begin(), mine.end())) {
+      widen(matrix);
+      return;
+    }
     if (mine != other) {
       std::vector<RowLabel> missing, more;
       std::set_difference(other.begin(), other.end(), mine.begin(), mine.end(), std::back_inserter(missing));
@@ -130,6 +138,28 @@ class Joiner {
     SparseMatrix permuted;
     permuted = matrix.values.twistedBy(permutation);
     matrix.values = SparseMatrix(permuted.transpose());  // symmetric, and its rows are in order then
+    matrix.labels = rows_;
+  }
+
+  [[noreturn]] static void refuse_mixed_names(const FiniteElementMatrix& silent, const FiniteElementMatrix& telling) {
+    throw InvalidInput(silent.where,
+                       fmt::format("\"{}\" does not tell what its rows are, and those of \"{}\" may be in "
+                                   "another order; give rows = \"...\", the table of the rows of \"{}\"",
+                                   silent.file, telling.file, silent.file));
+  }
+
+  /// Rows that a damping matrix lacks are zero.
+  void widen(FiniteElementMatrix& matrix) const {
+    std::map<RowLabel, int> places;
+    for (std::size_t i = 0; i < rows_.size(); ++i) places.emplace(rows_[i], static_cast<int>(i));
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto place = [&](Index i) { return places.at(matrix.labels[static_cast<std::size_t>(i)]); };
+    for (Index j = 0; j < matrix.values.outerSize(); ++j)
+      for (SparseMatrix::InnerIterator entry(matrix.values, j); entry; ++entry)
+        entries.emplace_back(place(entry.row()), place(j), entry.value());
+    const auto n = static_cast<Index>(rows_.size());
+    matrix.values = SparseMatrix(n, n);
+    matrix.values.setFromTriplets(entries.begin(), entries.end());
     matrix.labels = rows_;
   }
 
