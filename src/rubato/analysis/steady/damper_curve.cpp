@@ -1,3 +1,4 @@
+#include <rubato/analysis/pieces.hpp>
 #include <rubato/analysis/steady/damper_curve.hpp>
 #include <rubato/analysis/steady/damper_curve_line.hpp>
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
@@ -8,10 +9,7 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -291,38 +289,18 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   SweepProgress progress(context.progress, 1);
   Lines lines(plan, input, solvers, layouts, tables.has_limits(), progress, context.stop);
 
-  bool was_interrupted = false;
-  const long known = context.journal ? std::min(context.journal->finished(), plan.sweep.lines()) : 0;
-  for (long i = 0; i < known; ++i) {
-    const DamperLineResult result = DamperLineResult::unpacked(i, layouts, context.journal->read(i));
-    tables.write(result);
+  const bool side_by_side = plan.sweep.lines() < pieces_at_once(context);
+  long next = 0;
+  PieceWork<long, DamperLineResult> work;
+  work.next = [&] { return next < plan.sweep.lines() ? std::optional(next++) : std::nullopt; };
+  work.recall = [&](long line, const std::vector<double>& values) {
+    DamperLineResult result = DamperLineResult::unpacked(line, layouts, values);
     progress.add(static_cast<long>(result.counts.total()));
-  }
-
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
-  arena.execute([&] {
-    using Shared = std::shared_ptr<DamperLineResult>;
-    const long together = 4L * std::max(1, arena.max_concurrency());
-    const bool side_by_side = plan.sweep.lines() < together;
-    long next = known;
-    tbb::parallel_pipeline(
-        static_cast<std::size_t>(together),
-        tbb::make_filter<void, long>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
-          if (context.stop.load() || next == plan.sweep.lines()) {
-            flow.stop();
-            return -1L;
-          }
-          return next++;
-        }) & tbb::make_filter<long, Shared>(tbb::filter_mode::parallel, [&](long line) {
-          return std::make_shared<DamperLineResult>(lines.solve(line, side_by_side));
-        }) & tbb::make_filter<Shared, void>(tbb::filter_mode::serial_in_order, [&](const Shared& result) {
-          tables.write(*result);
-          if (!result->is_whole) was_interrupted = true;
-          // What follows a gap would not be found again.
-          if (context.journal && !was_interrupted) context.journal->keep(result->packed());
-        }));
-  });
+    return result;
+  };
+  work.solve = [&](long line) { return lines.solve(line, side_by_side); };
+  work.write = [&](const DamperLineResult& result) { tables.write(result); };
+  const bool was_interrupted = work_in_pieces(work, context);
   tables.finish();
   const DamperCurveCounts& counts = tables.counts();
   context.progress.advance(counts.total());

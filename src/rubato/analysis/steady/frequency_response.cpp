@@ -1,3 +1,4 @@
+#include <rubato/analysis/pieces.hpp>
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_piece.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
@@ -5,9 +6,6 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/info.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <optional>
@@ -196,42 +194,16 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
   Tables tables(name, plan, layouts, context.sink);
   Pieces pieces(plan, worker().lanes());
 
-  bool was_interrupted = false;
-  const long known = context.journal ? context.journal->finished() : 0;
-  for (long i = 0; i < known; ++i) {
-    const auto piece = pieces.next();
-    if (!piece) break;
-    const PieceResult result = PieceResult::unpacked(*piece, layouts, context.journal->read(i));
-    tables.write(result);
+  PieceWork<SweepPiece, PieceResult> work;
+  work.next = [&] { return pieces.next(); };
+  work.recall = [&](const SweepPiece& piece, const std::vector<double>& values) {
+    PieceResult result = PieceResult::unpacked(piece, layouts, values);
     progress.add(static_cast<long>(result.counts.total()));
-  }
-
-  const int cores = tbb::info::default_concurrency();
-  tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, cores) : cores);
-  arena.execute([&] {
-    using Shared = std::shared_ptr<PieceResult>;
-    const auto tokens = static_cast<std::size_t>(4 * std::max(1, arena.max_concurrency()));
-    tbb::parallel_pipeline(
-        tokens,
-        tbb::make_filter<void, Shared>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) -> Shared {
-          auto piece = context.stop.load() ? std::nullopt : pieces.next();
-          if (!piece) {
-            flow.stop();
-            return nullptr;
-          }
-          auto result = std::make_shared<PieceResult>();
-          result->piece = *piece;
-          return result;
-        }) & tbb::make_filter<Shared, Shared>(tbb::filter_mode::parallel, [&](Shared result) {
-          *result = worker().solve(result->piece);
-          return result;
-        }) & tbb::make_filter<Shared, void>(tbb::filter_mode::serial_in_order, [&](const Shared& result) {
-          tables.write(*result);
-          if (!result->is_whole) was_interrupted = true;
-          // What follows a gap would not be found again.
-          if (context.journal && !was_interrupted) context.journal->keep(result->packed());
-        }));
-  });
+    return result;
+  };
+  work.solve = [&](const SweepPiece& piece) { return worker().solve(piece); };
+  work.write = [&](const PieceResult& result) { tables.write(result); };
+  (void)work_in_pieces(work, context);
   tables.finish();
   const SweepCounts& counts = tables.counts();
   context.progress.advance(counts.total());

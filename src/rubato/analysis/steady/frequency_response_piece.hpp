@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/pieces.hpp>
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
@@ -7,7 +8,6 @@
 #include <array>
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -44,28 +44,6 @@ struct PieceResult {
   /// As one list of numbers, and back, for the journal. Throws InvalidInput for the list of another piece.
   std::vector<double> packed() const;
   static PieceResult unpacked(const SweepPiece& piece, const SweepTables& tables, std::span<const double> values);
-};
-
-/// Counts finished points over all threads and tells of them, from whichever thread is free to.
-class SweepProgress {
- public:
-  /// @param points_a_report  1 where a point takes long
-  SweepProgress(Progress& progress, long points_a_report) : progress_(progress), points_a_report_(points_a_report) {}
-  /// `count` may be negative: points that are solved again.
-  void add(long count) {
-    const long now = points_.fetch_add(count, std::memory_order_relaxed) + count;
-    if (now % points_a_report_ == 0) tell();
-  }
-
- private:
-  void tell() {
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock) progress_.advance(static_cast<double>(points_.load(std::memory_order_relaxed)));
-  }
-  Progress& progress_;
-  long points_a_report_;
-  std::atomic<long> points_{0};
-  std::mutex mutex_;
 };
 
 /// Solves pieces of a sweep; what it answers for a piece does not depend on the pieces before. One a thread.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rubato/analysis/steady/packed_numbers.hpp>
+#include <rubato/analysis/packed_numbers.hpp>
 #include <rubato/steady/steady_solver.hpp>
 
 #include <array>

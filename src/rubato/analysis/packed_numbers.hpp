@@ -33,12 +33,11 @@ class PackedNumbers {
   void expect_end() const {
     if (at_ != values_.size()) refuse();
   }
-
- private:
   [[noreturn]] static void refuse() {
     throw InvalidInput("--resume: the journal holds pieces of another kind; run without --resume to begin afresh");
   }
 
+ private:
   std::span<const double> values_;
   std::size_t at_ = 0;
 };
