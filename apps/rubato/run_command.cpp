@@ -109,7 +109,7 @@ void tell_what_begins_anew(const PreparedStudy& study, const Journals& journals)
     if (!names.empty())
       tell(fmt::format("--resume: {} begin{} anew: {}", fmt::join(names, ", "), names.size() == 1 ? "s" : "", why));
   };
-  tell_of(others, "only frequency responses and damper curves go on where they stopped");
+  tell_of(others, "only sweeps go on where they stopped");
   tell_of(sweeps, "no interrupted run left points of it");
 }
 

@@ -137,7 +137,7 @@ class Command(CommandCase):
         study = self.write(LONG.replace("DURATION", "1.0"))
         result = self.run_command("run", study, "--resume")
         self.assertEqual(result.returncode, 0)
-        self.assertIn('--resume: "long" begins anew: only frequency responses and damper curves go on where they stopped\n',
+        self.assertIn('--resume: "long" begins anew: only sweeps go on where they stopped\n',
                       result.stderr)
 
     def test_an_analysis_without_a_static_start_leaves_the_others_alone(self):

@@ -38,9 +38,10 @@ TEST(Analysis, ReadsModes) {
             "study.toml:40:9: error: analysis \"response\": count is 3, but a model of 2 coordinates has 2 modes");
   EXPECT_EQ(with("count = 0\n"),
             "study.toml:40:9: error: analysis \"response\": count must be a whole number of at least 1, got 0");
-  EXPECT_EQ(
-      with("step = 0.1\n"),
-      "study.toml:40:1: error: analysis \"response\" has no key \"step\"; known: name, type, count, observe, about");
+  EXPECT_EQ(with("step = 0.1\n"),
+            "study.toml:40:1: error: analysis \"response\" has no key \"step\"; known: name, type, count, observe, "
+            "about, sweep, "
+            "shapes, engine_orders, speed, speed_unit");
   EXPECT_EQ(with("observe = [\"balde\"]\n"),
             "study.toml:40:12: error: observe names \"balde\", which is no coordinate; did you mean \"blade\"? (known: "
             "disk, blade)");
@@ -162,7 +163,8 @@ TEST(AnalysisError, RefusesAKeyThatItDoesNotKnow) {
   EXPECT_EQ(verdict_adding("start = \"static\"\n"),
             "study.toml:42:1: error: analysis \"response\" has no key \"start\"; known: name, type, method, step, "
             "duration, "
-            "output, observe, section_forces, energy, allow_unstable, project_velocities, initial, displacements");
+            "output, observe, section_forces, energy, allow_unstable, project_velocities, initial, displacements, "
+            "sweep, histories");
 }
 
 }  // namespace

@@ -12,14 +12,17 @@ ParameterDependence::ParameterDependence(const model::StudyDescription& study, c
     : study_(study),
       values_(values),
       formula_uses_(values.size()),
+      model_uses_(values.size()),
       in_angular_frequency_(values.size()),
       in_frequency_(values.size()) {
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::find(fixed.begin(), fixed.end(), i) == fixed.end()) formula_uses_[i] = used(study.parameters[i].value);
   for (auto& uses : role_uses_) uses.resize(values.size());
   model::for_each_quantity(study.model, [&](const model::Quantity& quantity, Role role, bool of_time) {
-    if (role == Role::none) return;
-    for (const std::size_t place : used(quantity, of_time)) role_uses_[static_cast<std::size_t>(role)][place] = true;
+    for (const std::size_t place : used(quantity, of_time)) {
+      model_uses_[place] = true;
+      if (role != Role::none) role_uses_[static_cast<std::size_t>(role)][place] = true;
+    }
   });
   for (const auto& load : model::load_laws(study.model)) {
     const auto* harmonic = std::get_if<model::HarmonicDescription>(load.law);
@@ -61,6 +64,13 @@ bool ParameterDependence::reaches(std::size_t parameter, Role role) const {
 bool ParameterDependence::reaches_anything(std::size_t parameter) const {
   return reaches(parameter, Role::structure) || reaches(parameter, Role::load) || reaches(parameter, Role::frequency) ||
          reaches(parameter, Role::limit);
+}
+
+bool ParameterDependence::reaches_model(std::size_t parameter) const {
+  const auto reached = reached_by(parameter);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    if (reached[i] && model_uses_[i]) return true;
+  return false;
 }
 
 std::vector<std::size_t> ParameterDependence::followers(std::size_t parameter) const {

@@ -22,6 +22,8 @@ class ParameterDependence {
 
   bool reaches(std::size_t parameter, Role role) const;
   bool reaches_anything(std::size_t parameter) const;
+  /// The same, and what a steady response does not have: the start, what acts in static states only.
+  bool reaches_model(std::size_t parameter) const;
   /// The parameters whose formulas follow a parameter, in the order of the study, without itself.
   std::vector<std::size_t> followers(std::size_t parameter) const;
   /// Whether a formula changes with a parameter.
@@ -42,6 +44,7 @@ class ParameterDependence {
   const numerics::Parameters& values_;
   std::vector<std::vector<std::size_t>> formula_uses_;  ///< of each parameter; empty where it is fixed
   std::array<std::vector<bool>, 4> role_uses_;          ///< by role, whether each parameter stands in such a quantity
+  std::vector<bool> model_uses_;                        ///< whether each parameter stands in any quantity of the model
   std::vector<bool> in_angular_frequency_, in_frequency_;
 };
 

@@ -2,6 +2,7 @@
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/analysis/samples/samples.hpp>
 #include <rubato/analysis/static.hpp>
 #include <rubato/analysis/steady/damper_curve.hpp>
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
@@ -44,6 +45,7 @@ std::vector<std::string> warnings_of(const Plan& plan) {
 AnalysisOutline outline(const TransientPlan& plan) {
   // A number takes 8 bytes in netCDF and about 20 in CSV.
   AnalysisOutline result{summary(plan), plan.rows * plan.columns * 28.0};
+  result.key_bytes = 5.0 * 28.0 * plan.columns;
   result.warnings = warnings_of(plan.march);
   return result;
 }
@@ -89,7 +91,18 @@ AnalysisOutline outline(const ModesPlan& plan, const integrate::SystemKind& kind
     result = {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
               limits * static_cast<double>(plan.count) * width * 28.0};
   }
+  result.key_bytes = 2.0 * 28.0 * static_cast<double>(plan.count * kind.limit_count());
   result.warnings = warnings_of(plan);
+  return result;
+}
+
+AnalysisOutline outline(const SamplesPlan& plan) {
+  AnalysisOutline result;
+  result.summary = plan.summary;
+  result.points = static_cast<double>(plan.sweep.lines());
+  result.expected_bytes = 1.3 * result.points * plan.bytes_of_one;  // 8 bytes a number in the journal
+  if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 / 28.0 * result.points * plan.bytes_of_one;
+  result.warnings = plan.warnings;
   return result;
 }
 
@@ -111,6 +124,7 @@ struct Plan {
     const auto plan = std::make_shared<const StaticPlan>(plan_static(analysis.name, analysis.where, equilibrium, kind));
     AnalysisOutline result{kind.is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
                            100.0 * static_cast<double>(kind.system().size())};
+    result.key_bytes = result.expected_bytes;
     result.warnings = plan->warnings;
     return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
@@ -184,6 +198,7 @@ struct Plan {
 
 /// Analyses whose results are motions of the whole structure; those of a sweep have no shape to draw.
 bool is_drawn(const model::AnalysisDescription& analysis) {
+  if (swept_of(analysis)) return false;
   return std::holds_alternative<model::TransientDescription>(analysis.task) ||
          std::holds_alternative<model::ModesDescription>(analysis.task) ||
          std::holds_alternative<model::StaticDescription>(analysis.task);
@@ -193,7 +208,7 @@ bool is_drawn(const model::AnalysisDescription& analysis) {
 RunReport concluded(const model::AnalysisDescription& analysis, RunReport report, const StudyInput& input,
                     RunContext& context) {
   // Modes have written the configuration about which they are.
-  if (!std::holds_alternative<model::ModesDescription>(analysis.task))
+  if (!std::holds_alternative<model::ModesDescription>(analysis.task) && !swept_of(analysis))
     results::draw_start(analysis.name, input.kind, context.sink);
   const std::size_t nodes = input.kind.is_constrained() ? 0 : input.study.model.structure.nodes.size();
   if (is_drawn(analysis) && nodes > 0 && nodes <= results::most_drawn_nodes)
@@ -207,11 +222,8 @@ RunReport concluded(const model::AnalysisDescription& analysis, RunReport report
   return report;
 }
 
-RunReport stopped() { return {RunStatus::interrupted, "interrupted before it had more to keep", {}}; }
-
-}  // namespace
-
-PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+/// Plans an analysis that is not repeated, or the sample of one that is.
+PlannedAnalysis plan_one(const model::AnalysisDescription& analysis, const StudyInput& input) {
   StudyTransients own(input.study.analyses, input.kind, input.parameters);
   PlannedAnalysis planned =
       std::visit(Plan{analysis, input, input.transients ? *input.transients : own}, analysis.task);
@@ -225,6 +237,19 @@ PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const 
     };
   }
   return planned;
+}
+
+RunReport stopped() { return {RunStatus::interrupted, "interrupted before it had more to keep", {}}; }
+
+}  // namespace
+
+PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
+  refuse_ambiguous_state(analysis, input.study.analyses);
+  if (!swept_of(analysis)) return plan_one(analysis, input);
+  const auto plan = std::make_shared<const SamplesPlan>(plan_samples(analysis, input, plan_one));
+  return {outline(*plan), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+            return run_samples(name, *plan, at, plan_one, context);
+          }};
 }
 
 RunReport run_analysis(const model::AnalysisDescription& analysis, const PlannedAnalysis& planned,

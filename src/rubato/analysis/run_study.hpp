@@ -15,6 +15,7 @@ struct AnalysisOutline {
   std::string summary;                     ///< "transient, generalized_alpha, 12000 steps of 0.005 s"
   double expected_bytes = 0.0;             ///< of the results, roughly
   double points = 0.0;                     ///< of a sweep; 0 for other analyses
+  double key_bytes = 0.0;                  ///< of its key numbers, as a sample of a sweep, roughly
   double memory = 0.0;                     ///< what has to be kept until its end [bytes], roughly
   std::vector<std::string> warnings = {};  ///< what a run would warn of, as far as it is known before
 };

@@ -21,6 +21,7 @@ TransientObserver::TransientObserver(const TransientPlan& plan, TransientRecorde
 
 void TransientObserver::start(const system::State& state) {
   if (ledger_) ledger_->start(state);
+  recorder_.show_step(state);
   // Requested times may begin later than the run.
   if (plan_.output == Kind::times && (plan_.times.empty() || plan_.times.front() > state.t)) return;
   record(state, state);
@@ -35,6 +36,7 @@ bool TransientObserver::accepted(const system::State& before, const system::Stat
   const bool goes_on = !listener_ || listener_->accepted(before, after);
   if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
     record(after, after);
+  recorder_.show_step(after);
   if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
   return goes_on && !context_.stop.load(std::memory_order_relaxed);
 }

@@ -29,6 +29,7 @@ double positive(const model::Quantity& quantity, const numerics::Parameters& par
 void plan_output(TransientPlan& plan, const model::OutputDescription& output, const numerics::Parameters& parameters,
                  const Location& where) {
   plan.output = output.kind;
+  plan.shows_every_step = output.shows_every_step && output.kind != Kind::every_step;
   const bool is_exact = std::holds_alternative<integrate::Exact>(plan.march.method.formula);
   const double steps = is_exact               ? 0.0
                        : plan.march.automatic ? plan.march.automatic->expected_steps

@@ -21,6 +21,7 @@ struct TransientPlan {
   double interval = 0.0;      ///< [s]
   std::vector<double> times;  ///< rising [s]
   bool energy = true;
+  bool shows_every_step = false;  ///< in the table `every_step`, besides the rows that are asked for
   model::SectionForcesDescription section_forces;
   double rows = 0.0, columns = 0.0;  ///< expected numbers
 };

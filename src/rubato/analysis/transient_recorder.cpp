@@ -31,6 +31,10 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
     if (group->has_sums()) summing_.push_back(group.get());
   }
   rows_ = sink.open(layout);
+  if (plan.shows_every_step) {
+    layout.table = "every_step";
+    step_rows_ = sink.open(layout);
+  }
   if (!ledger_) return;
   energy_rows_ = sink.open(energy_layout(name, *ledger_));
   residue_.emplace(ledger_->accounts());
@@ -45,6 +49,15 @@ void TransientRecorder::book(const system::State& before, const system::State& a
       residue_->note(after.t, ledger_->at(after, after));
   }
   for (results::ColumnGroup* group : summing_) group->book(before, after);
+}
+
+void TransientRecorder::show_step(const system::State& state) {
+  if (!step_rows_) return;
+  shown_ = state;
+  balance_.find_shown_acceleration(shown_);
+  row_.assign(1, state.t);
+  for (const auto& group : groups_) group->append_since(state, shown_, row_);
+  step_rows_->append(row_);
 }
 
 void TransientRecorder::record(const system::State& before, const system::State& now, bool is_balanced) {

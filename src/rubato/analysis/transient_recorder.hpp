@@ -30,6 +30,8 @@ class TransientRecorder {
   /// @param before  the last state booked; may be `now`
   /// @param is_balanced  acceleration and multipliers of `now` are those to show: between the ends of a step
   void record(const system::State& before, const system::State& now, bool is_balanced = false);
+  /// Shows a state to the table `every_step`, where the plan has it.
+  void show_step(const system::State& state);
   long rows() const { return count_; }
   /// Null: there is no ledger.
   const ResidueWatch* residue() const { return residue_ ? &*residue_ : nullptr; }
@@ -42,7 +44,7 @@ class TransientRecorder {
   std::optional<ResidueWatch> residue_;
   system::State shown_;
   std::vector<double> row_;
-  std::unique_ptr<results::RowWriter> rows_, energy_rows_;
+  std::unique_ptr<results::RowWriter> rows_, energy_rows_, step_rows_;
   long count_ = 0, booked_ = 0;
 };
 

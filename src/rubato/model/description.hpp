@@ -231,6 +231,7 @@ struct OutputDescription {
   Quantity interval;            ///< [s]
   std::vector<Quantity> times;  ///< [s]
   Location where;
+  bool shows_every_step = false;  ///< in a table besides, for the key numbers of a sample; no key asks for it
 };
 
 /// The state of equilibrium under the loads just before t = 0, held forces and held displacements.
@@ -241,50 +242,6 @@ struct SectionForcesDescription {
   Location where;
 
   bool is_wanted() const { return of_all || !beams.empty(); }
-};
-
-struct StaticDescription {
-  std::optional<std::vector<ObservationDescription>> observe;        ///< all coordinates unless given
-  std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
-  SectionForcesDescription section_forces;
-};
-
-/// A step that chooses itself: step = { tolerance = ... }.
-struct StepDescription {
-  Quantity tolerance;      ///< [-]
-  std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
-  std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
-  std::optional<Quantity> first, smallest, largest;  ///< [s]
-  std::optional<bool> locate_events;  ///< end steps where contacts change their state; only stops unless given
-  std::optional<Quantity> reference;  ///< l of inertia_jump [m sqrt(kg)]
-  bool reference_is_initial = false;  ///< l = |q0|_M even where the model has a value of its own
-  bool as_printed = false;            ///< inertia_jump with the misprint of its source
-  bool rebuild = true;                ///< the auxiliary acceleration when the step changes
-  Location where;
-};
-
-struct TransientDescription {
-  std::optional<StaticDescription> initial;  ///< starts from equilibrium; the `observe` in it is not used
-  MethodDescription method;
-  std::optional<Quantity> step;                   ///< [s]; not for `exact`
-  std::optional<StepDescription> automatic_step;  ///< instead of `step`
-  Quantity duration;                              ///< [s]
-  OutputDescription output;
-  std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
-  SectionForcesDescription section_forces;
-  bool energy = true;  ///< keep the energy ledger
-  bool allow_unstable = false;
-  bool project_velocities = false;  ///< of mechanisms: removes what their constraints forbid after each step
-  Location project_velocities_where;
-};
-
-struct MethodStudyDescription {
-  std::vector<MethodDescription> methods;  ///< all that apply unless given
-  Quantity step;                           ///< [s], of the table of errors
-  Quantity duration;                       ///< [s]
-  std::vector<Quantity> ladder;            ///< steps of the figure error against step; a default ladder unless given
-  std::optional<ObservationDescription> observe;  ///< the first coordinate unless given
-  bool as_printed = false;                        ///< also the conventions of the thesis's tables
 };
 
 /// Values in order: a list, or so many points from one value to another, both ends included.
@@ -331,6 +288,67 @@ struct RandomSweepDescription {
 using SweepDescription =
     std::variant<std::monostate, GridSweepDescription, CaseSweepDescription, RandomSweepDescription>;
 
+/// An analysis that is repeated over samples of parameters, where it has no sweep of its own.
+struct SweptDescription {
+  enum class SpeedUnit { rad_per_second, hertz, rpm };
+
+  SweepDescription sweep;  ///< std::monostate: it is not repeated
+  Location where;
+  bool keeps_samples = false;           ///< the table of each sample, besides its key numbers
+  std::vector<Quantity> engine_orders;  ///< of modes: lines across the natural frequencies over a speed
+  std::string speed;                    ///< the parameter that is the speed; empty: the only one that is swept
+  Location engine_orders_where, speed_where;
+  SpeedUnit speed_unit = SpeedUnit::rad_per_second;
+
+  bool is_wanted() const { return sweep.index() != 0; }
+};
+
+struct StaticDescription {
+  std::optional<std::vector<ObservationDescription>> observe;        ///< all coordinates unless given
+  std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
+  SectionForcesDescription section_forces;
+  SweptDescription swept;
+};
+
+/// A step that chooses itself: step = { tolerance = ... }.
+struct StepDescription {
+  Quantity tolerance;      ///< [-]
+  std::string controller;  ///< "pi" unless given, "cardona_cassano", "fixed"
+  std::string estimator;   ///< "local_error", "inertia_jump", "embedded"; what suits method and controller unless given
+  std::optional<Quantity> first, smallest, largest;  ///< [s]
+  std::optional<bool> locate_events;  ///< end steps where contacts change their state; only stops unless given
+  std::optional<Quantity> reference;  ///< l of inertia_jump [m sqrt(kg)]
+  bool reference_is_initial = false;  ///< l = |q0|_M even where the model has a value of its own
+  bool as_printed = false;            ///< inertia_jump with the misprint of its source
+  bool rebuild = true;                ///< the auxiliary acceleration when the step changes
+  Location where;
+};
+
+struct TransientDescription {
+  std::optional<StaticDescription> initial;  ///< starts from equilibrium; the `observe` in it is not used
+  MethodDescription method;
+  std::optional<Quantity> step;                   ///< [s]; not for `exact`
+  std::optional<StepDescription> automatic_step;  ///< instead of `step`
+  Quantity duration;                              ///< [s]
+  OutputDescription output;
+  std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
+  SectionForcesDescription section_forces;
+  bool energy = true;  ///< keep the energy ledger
+  bool allow_unstable = false;
+  bool project_velocities = false;  ///< of mechanisms: removes what their constraints forbid after each step
+  Location project_velocities_where;
+  SweptDescription swept;
+};
+
+struct MethodStudyDescription {
+  std::vector<MethodDescription> methods;  ///< all that apply unless given
+  Quantity step;                           ///< [s], of the table of errors
+  Quantity duration;                       ///< [s]
+  std::vector<Quantity> ladder;            ///< steps of the figure error against step; a default ladder unless given
+  std::optional<ObservationDescription> observe;  ///< the first coordinate unless given
+  bool as_printed = false;                        ///< also the conventions of the thesis's tables
+};
+
 /// Points whose time histories are kept.
 struct WaveformsDescription {
   ValuesDescription at;  ///< the nearest frequencies of the response, in its unit
@@ -376,6 +394,7 @@ struct ModesDescription {
   std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
   std::optional<Location> about_equilibrium;                   ///< of a mechanism: where that was asked for
   std::optional<ReachedDescription> about_reached;             ///< of a mechanism
+  SweptDescription swept;
 };
 
 struct DamperCurveDescription {

@@ -47,7 +47,8 @@ bool is_over_the_parameter(std::string_view table) {
 
 std::optional<CurveLayout> curve_layout(const TableSource& table, const Attributes& analysis) {
   const std::string type = attribute(analysis, "type");
-  if (type != "frequency_response" && type != "damper_curve") return std::nullopt;
+  const bool has_histories = type == "swept_transient" && table.name() == "histories";
+  if (type != "frequency_response" && type != "damper_curve" && !has_histories) return std::nullopt;
   const auto& variables = table.variables();
   const auto index_of = [&](std::string_view name) -> std::optional<std::size_t> {
     for (std::size_t i = 0; i < variables.size(); ++i)

@@ -18,7 +18,8 @@ struct CurveRows {
   std::size_t first_row, rows;
 };
 
-/// The layout of a table of a frequency response or of a damper curve, nothing for other tables.
+/// The layout of a table of a frequency response, of a damper curve or of the histories of a swept transient, nothing
+/// for other tables.
 ///
 /// The abscissa is `time` where there is one, else `angular_frequency`; of the main table of a damper curve it is its
 /// parameter. Keys are the swept parameters, what names the kind of a row (`direction`, `peak`) and, under a time,

@@ -104,6 +104,27 @@ void observe_field(auto& visit, std::optional<std::vector<ObservationDescription
                 {.says = "coordinates to keep, or differences such as \"blade1 - damper\"", .unless = "all"});
 }
 
+inline constexpr const char* sweep_says =
+    "a grid { N0 = [...], mu = [...] }, a list of cases { file = \"cases.csv\" }, or random samples";
+
+/// The sweep of an analysis that is repeated over samples.
+void swept_fields(auto& visit, SweptDescription& swept) {
+  visit.sweep("sweep", swept.sweep, {.says = sweep_says});
+  visit.where(swept.where, "sweep");
+}
+
+/// A key that is for the samples of a sweep.
+void needs_a_sweep(auto& visit, const char* key) {
+  visit.requires_beside(key, "sweep");
+  visit.check([key](auto& reader) {
+    if (reader.has(key) && !reader.has("sweep"))
+      throw InvalidInput(reader.where(key),
+                         fmt::format("{}: \"{}\" is of the samples of a sweep; add sweep = {{ ... }}, "
+                                     "or leave it out",
+                                     reader.what(), key));
+  });
+}
+
 void fields(auto& visit, TransientDescription& transient) {
   visit.method(
       "method", transient.method,
@@ -136,6 +157,10 @@ void fields(auto& visit, TransientDescription& transient) {
   StaticDescription equilibrium;
   held_displacements_field(visit, equilibrium.displacements);
   if (is_static) transient.initial = equilibrium;
+  swept_fields(visit, transient.swept);
+  visit.flag("histories", transient.swept.keeps_samples,
+             {.says = "of a sweep: keep the rows of every sample, besides its key numbers", .unless = "false"});
+  needs_a_sweep(visit, "histories");
   visit.rule(R"({"dependentSchemas": {"displacements": {
     "required": ["initial"], "properties": {"initial": {"const": "static"}}}}})");
   visit.rule(R"({"if": {"properties": {"method": {"anyOf": [{"const": "exact"},
@@ -160,6 +185,33 @@ void fields(auto& visit, ReachedDescription& reached) {
   visit.flag("static", reached.settles, {.says = "go on to the equilibrium next to it", .unless = "false"});
 }
 
+/// Engine orders across the natural frequencies over a speed: a Campbell diagram.
+void campbell_fields(auto& visit, SweptDescription& swept) {
+  using Unit = SweptDescription::SpeedUnit;
+  visit.quantities(
+      "engine_orders", swept.engine_orders, {},
+      {.unit = "-", .says = "of a sweep over a speed: where these multiples of it meet natural frequencies"});
+  visit.where(swept.engine_orders_where, "engine_orders");
+  visit.requires_beside("engine_orders", "sweep");
+  visit.text("speed", swept.speed, {.says = "the swept parameter that is the speed", .unless = "the only one"});
+  visit.where(swept.speed_where, "speed");
+  visit.word("speed_unit", swept.speed_unit, {{"rad/s", Unit::rad_per_second}, {"Hz", Unit::hertz}, {"rpm", Unit::rpm}},
+             {.says = "of the speed", .unless = "rad/s"});
+  for (const char* key : {"speed", "speed_unit"}) visit.requires_beside(key, "engine_orders");
+  visit.check([](auto& reader) {
+    if (reader.has("engine_orders") && !reader.has("sweep"))
+      throw InvalidInput(reader.where("engine_orders"),
+                         reader.what() +
+                             ": \"engine_orders\" are lines over a speed; add sweep = { speed = { from = 0, to = "
+                             "..., points = ... } }, or leave them out");
+    for (const char* key : {"speed", "speed_unit"})
+      if (reader.has(key) && !reader.has("engine_orders"))
+        throw InvalidInput(
+            reader.where(key),
+            fmt::format("{}: \"{}\" goes with \"engine_orders\"; add these, or leave it out", reader.what(), key));
+  });
+}
+
 void fields(auto& visit, ModesDescription& modes) {
   visit.quantity("count", modes.count, {.says = "the lowest so many modes of each limit", .unless = "all, at most 20"});
   visit.observe(
@@ -172,6 +224,11 @@ void fields(auto& visit, ModesDescription& modes) {
                       .unless = "given"},
                      [&](auto& inner) { fields(inner, modes.about_reached.emplace()); });
   if (is_static) visit.where(modes.about_equilibrium.emplace(), "about");
+  swept_fields(visit, modes.swept);
+  visit.flag("shapes", modes.swept.keeps_samples,
+             {.says = "of a sweep: keep all columns of every sample, besides its key numbers", .unless = "false"});
+  needs_a_sweep(visit, "shapes");
+  campbell_fields(visit, modes.swept);
 }
 
 /// The parameter that takes the frequencies of steady responses, and what is swept besides.
@@ -180,9 +237,7 @@ void excitation_fields(auto& visit, auto& task) {
       "excitation", task.excitation,
       {.says = "the parameter that takes the frequencies", .unless = "the only one in the frequencies of the forces"});
   visit.where(task.excitation_where, "excitation");
-  visit.sweep(
-      "sweep", task.sweep,
-      {.says = "a grid { N0 = [...], mu = [...] }, a list of cases { file = \"cases.csv\" }, or random samples"});
+  visit.sweep("sweep", task.sweep, {.says = sweep_says});
   visit.where(task.sweep_where, "sweep");
 }
 
@@ -264,6 +319,7 @@ void fields(auto& visit, StaticDescription& equilibrium) {
   held_displacements_field(visit, equilibrium.displacements);
   observe_field(visit, equilibrium.observe);
   section_forces_field(visit, equilibrium.section_forces);
+  swept_fields(visit, equilibrium.swept);
 }
 
 /// Of analyses of all types.

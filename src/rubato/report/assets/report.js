@@ -91,7 +91,9 @@ function write_analysis(parent, analysis, index) {
                                                              facts.length ? " " : "", badge(status)),
                               what_became(analysis), statistics_of(analysis));
   write_scene(chapter, analysis);
-  if (is_transient(analysis)) {
+  if (is_swept(analysis)) {
+    write_swept(chapter, analysis);
+  } else if (is_transient(analysis)) {
     write_transient(chapter, analysis);
     const others = analysis.tables.filter((table) => table.name !== "" && table.name !== "energy");
     others.filter(is_of_events).forEach((table) => write_events(chapter, analysis, table));
