@@ -169,5 +169,33 @@ step = )text") + step);
   }
 }
 
+// The strut of a swinging bar is shortest, and longest, where it points at the pin: friction turns round there,
+// whatever has latched elsewhere. All that is dissipated is the limit of 0.5 N times the way of the strut.
+TEST_P(JointsAtTheirLimit, TurnRoundInDeadCentresBesideALatch) {
+  const std::string bar = body("bar", 1.0, 0.0) + joint("pin", "revolute", "ground", "bar", 0.0, "") +
+                          "[[joint]]\nname = \"dry\"\ntype = \"strut\"\nbetween = [\"ground\", \"bar\"]\n"
+                          "at = [0.5, 2.0]\nto = [0.5, 0.5]\nfriction = { coefficient = 0.1, preload = 5.0 }\n" +
+                          in_plane.gravity() + run(4.0, "0.0005");
+  const std::string latched =
+      body("slide", 0.0, 0.0) + joint("guide", "prismatic", "ground", "slide", 0.0,
+                                      "axis = [1.0, 0.0]\nlock = { at = 0.0, kind = \"latch\", side = \"below\" }");
+  const MechanismStudy ran(latched + bar), alone(bar);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& steps = ran.table("run").rows;
+  double way = 0.0, before = 0.0;
+  int turns = 0;
+  for (std::size_t row = 1; row < steps.size(); ++row) {
+    const double by = ran.at(row, "run", "displacement", "dry") - ran.at(row - 1, "run", "displacement", "dry");
+    way += std::abs(by);
+    turns += by * before < 0.0 ? 1 : 0;
+    before = by;
+    EXPECT_GE(ran.at(row, "run.energy", "friction_dissipated"),
+              ran.at(row - 1, "run.energy", "friction_dissipated") - 1e-9);
+  }
+  EXPECT_GT(turns, 5);
+  EXPECT_NEAR(ran.last("run.energy", "friction_dissipated"), 0.5 * way, 0.01 * way);
+  EXPECT_NEAR(ran.last("run.energy", "friction_dissipated"), alone.last("run.energy", "friction_dissipated"), 1e-4);
+}
+
 }  // namespace
 }  // namespace rubato

@@ -79,10 +79,10 @@ std::vector<char> held_frictions(system::MechanismEquations& equations, const sy
     return {};
   const Vector masses = equations.mechanism().mass().diagonal();
   for (std::size_t i = 0; i < sliding.size(); ++i) {
-    const double alone = now[i].slope.cwiseAbs2().cwiseQuotient(masses).sum();
-    const double least = std::max(same_axis * without[i].of(without[i]), round_off * alone);
+    const double alone = now[i].slope.cwiseAbs2().cwiseQuotient(masses).sum(), free = without[i].of(without[i]);
     const bool is_driven = std::count(now[i].driven.begin(), now[i].driven.end(), 1) > 0;
-    is_held[sliding[i]] = !is_driven && now[i].of(now[i]) <= least;
+    const bool may_move = free > round_off * alone;  // not so in a dead centre, through which it goes on
+    is_held[sliding[i]] = !is_driven && may_move && now[i].of(now[i]) <= std::max(same_axis * free, round_off * alone);
   }
   return is_held;
 }

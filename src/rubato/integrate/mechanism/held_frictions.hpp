@@ -22,7 +22,7 @@ bool find_friction_mobilities(system::MechanismEquations& equations, const syste
 
 /// Which of the frictions that slide cannot move, since other joints that stick, or rigid locks, hold their
 /// coordinates: their mobility is round-off of the mobility without those joints and locks. A coordinate that a drive
-/// moves is not held.
+/// moves is not held, nor is one that has none without them either: in a dead centre it turns round.
 /// @return one for each friction of the model, or nothing where a matrix cannot be factorised
 std::vector<char> held_frictions(system::MechanismEquations& equations, const system::State& state);
 
