@@ -251,6 +251,7 @@ ConsistentStart make_consistent(system::ConstrainedEquations& equations, system:
   equations.constraint_rate(state.v, rate);
   mean_rate = 0.5 * (mean_rate + rate) - rate_of_time;
   for (const Index row : of.driven_rows()) result.drive_work -= impulse[row] * mean_rate[row];
+  result.impulse = std::move(impulse);
   of.times_mass(state.v, product);
   result.energy_lost = before - 0.5 * state.v.dot(product) + result.drive_work;
   result.worst_rate = largest_of(rate, result.gap_rate);

@@ -21,6 +21,7 @@ struct ConsistentStart {
   double drive_work = 0.0;       ///< what the drives gave as it set their velocities [J]
   double gap_rate = 0.0;         ///< largest rate of the constraints that no velocities remove [m/s], [rad/s]
   Index worst_rate = -1;         ///< where, if it is not round-off: constraints that contradict each other in motion
+  Vector impulse;                ///< of the constraints, in the projection of the velocities [N s], [N m s]
   std::vector<Index> redundant;  ///< rows of constraints that repeat others in this configuration
 };
 

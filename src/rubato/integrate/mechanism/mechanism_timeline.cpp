@@ -2,6 +2,7 @@
 #include <rubato/integrate/mechanism/friction_phases.hpp>
 #include <rubato/integrate/mechanism/friction_release.hpp>
 #include <rubato/integrate/mechanism/mechanism_timeline.hpp>
+#include <rubato/integrate/mechanism/stop_impacts.hpp>
 #include <rubato/model/time_kinks.hpp>
 
 #include <algorithm>
@@ -109,8 +110,10 @@ bool MechanismTimeline::has_drive_jump(double t) const {
 
 bool MechanismTimeline::project(system::State& state, double& energy_lost) {
   std::fill(state.rubbing.begin(), state.rubbing.end(), model::friction_free);
-  const ConsistentStart projected = make_consistent(equations_, state, model::Side::right);
+  const ConsistentStart projected = make_consistent_pressing(equations_, state, model::Side::right);
   if (!projected.is_consistent) return false;
+  for (std::size_t i = 0; i < row_.size(); ++i)
+    if (projected.state.phase[i] != state.phase[i]) events_.push_back({state.t, static_cast<int>(i), false, 0.0});
   energy_lost = projected.energy_lost;
   impulsive_work_ += projected.drive_work;
   state = projected.state;
@@ -237,7 +240,7 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
   const Rubbing rubbing = rubbing_after(before, state);
   bool jumps = rubbing.has_changed, has_impact = false;
   for (std::size_t i = 0; i < row_.size(); ++i) {
-    if (!is_watched(i, before)) continue;
+    if (!is_watched(i, before) || state.phase[i] != before.phase[i]) continue;  // an impact before may have opened it
     GuardValue now = guard(static_cast<Index>(i), before, state);
     if (!(now.value <= resolution_ * std::abs(now.rate) && now.rate <= 0.0)) continue;
     count_transition(i, state);
@@ -251,7 +254,10 @@ Passage MechanismTimeline::pass(const system::State& before, system::State& stat
       events_.back().energy_lost = 0.5 * lock.stiffness * depth * depth;
     }
     if (!engages || !lock.is_rigid()) continue;
-    if (!project(state, events_.back().energy_lost)) return Passage::fails;
+    const std::size_t event = events_.size() - 1;
+    double energy_lost = 0.0;
+    if (!project(state, energy_lost)) return Passage::fails;
+    events_[event].energy_lost = energy_lost;
     has_impact = true;
   }
   const bool is_settled = has_impact

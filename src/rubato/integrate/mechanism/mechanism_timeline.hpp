@@ -35,7 +35,8 @@ struct LockEvent {
 ///   held by drives that stand a drive that stood when it was left out moves
 ///   law                       Law::guard(): it goes on by another formula
 ///
-/// A lock without stiffness that engages projects the velocities with M; the state goes on with the acceleration and
+/// A lock without stiffness that engages projects the velocities with M, where stops only press: those that stand and
+/// would pull let go. The state goes on with the acceleration and
 /// the multipliers of equilibrium. A drive whose prescribed velocity jumps does the same: it gives the impulse, whose
 /// work is booked. No other energy can appear: it is located, and the projection only takes.
 class MechanismTimeline final : public Timeline {
