@@ -3,6 +3,7 @@
 #include <rubato/integrate/kinds/start_on_locks.hpp>
 #include <rubato/integrate/kinds/start_rates.hpp>
 #include <rubato/integrate/mechanism/friction_phases.hpp>
+#include <rubato/integrate/mechanism/stop_impacts.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -53,17 +54,26 @@ ConsistentStart start_with_rates(system::MechanismEquations& equations, std::vec
   return start;
 }
 
-/// Opens the stops which the velocities of a state lead away from.
-void leave_stops(const system::Mechanism& mechanism, system::State& state) {
+/// Opens the stops with stiffness that do not press with the velocities of a state. Returns whether there was one.
+bool leave_elastic_stops(const system::Mechanism& mechanism, system::State& state) {
+  constexpr double no_way = 1e-9;
   std::vector<double> velocity(static_cast<std::size_t>(state.v.size()) + 1, 0.0);
   std::copy(state.v.begin(), state.v.end(), velocity.begin() + 1);
   model::Motion motion;
   motion.q = state.q.data();
   motion.v = velocity.data() + 1;
   const auto& locks = mechanism.model().locks;
-  for (std::size_t i = 0; i < locks.size(); ++i)
-    if (state.phase[i] == model::lock_engaged && !locks[i].is_latch && locks[i].sign * locks[i].s.rate(motion) < 0.0)
-      state.phase[i] = model::lock_open;
+  bool has_left = false;
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    const model::Lock& lock = locks[i];
+    if (state.phase[i] != model::lock_engaged || lock.is_latch || lock.is_rigid()) continue;
+    const double rate = lock.s.rate(motion), way = lock.s.value(motion.q) - lock.at;
+    const double press = lock.sign * (lock.stiffness * way + lock.damping * rate);
+    if (!(lock.sign * rate < 0.0) || press > lock.stiffness * no_way * (1.0 + std::abs(lock.at))) continue;
+    state.phase[i] = model::lock_open;
+    has_left = true;
+  }
+  return has_left;
 }
 
 /// Refuses friction that follows a reaction which joints share in a way that nothing determines: what they share is
@@ -186,9 +196,10 @@ system::State set_in_motion(const Location& where, const system::Mechanism& mech
   at_rest.v = mechanism.start().v;
   system::MechanismEquations equations(mechanism);
   if (!mechanism.model().start_rates.empty()) set_start_rates(equations, at_rest, warnings);
-  leave_stops(mechanism, at_rest);
   if (mechanism.model().drives.empty() && at_rest.v.isZero(0.0)) return at_rest;
-  const auto start = make_consistent(equations, std::move(at_rest));
+  ConsistentStart start = make_consistent_pressing(equations, at_rest, model::Side::right);
+  if (start.is_consistent && leave_elastic_stops(mechanism, start.state))
+    start.is_consistent = find_acceleration(equations, start.state, model::Side::right);
   if (!start.is_consistent)
     throw InvalidInput(
         where,
