@@ -1,11 +1,12 @@
 #include <support/mechanism_study.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-// Which stops hold where a run starts from its static state.
+// Which stops hold where a run starts from its static state, and where modes are of the configuration given.
 namespace rubato {
 namespace {
 
@@ -86,6 +87,40 @@ step = { tolerance = 1e-7 }
   EXPECT_NEAR(up.at(0, "run.energy", "kinetic"), 1.0, 1e-12);
   EXPECT_NEAR(down.last("run", "displacement", "guide"), 0.0, 1e-12);
   EXPECT_NEAR(down.at(0, "run.energy", "kinetic"), 0.0, 1e-12);
+}
+
+// Modes are of what stands still: the spring presses the block against its stop, or takes it off, by 100 N.
+TEST(StartsOnStops, OfModesAreNotDecidedByVelocities) {
+  const auto squares = [](const char* rest_length, const char* velocity) {
+    const MechanismStudy ran(fmt::format(R"(
+[[body]]
+name = "block"
+mass = 1.0
+inertia = 1.0
+position = [0.0, 0.0]
+velocity = [0.0, {}]
+[[joint]]
+name = "guide"
+type = "prismatic"
+between = ["ground", "block"]
+at = [0.0, 0.0]
+axis = [0.0, 1.0]
+stiffness = 100.0
+rest = {}
+lock = {{ at = 0.0, kind = "stop", side = "above" }}
+[[analysis]]
+name = "modes"
+type = "modes"
+)",
+                                         velocity, rest_length));
+    EXPECT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+    const auto found = ran.sink.tables.find("modes");
+    return found == ran.sink.tables.end() ? 0u : found->second.rows.size();
+  };
+  for (const char* velocity : {"1.0", "0.0", "-1.0"}) {
+    EXPECT_EQ(squares("-1.0", velocity), 0u) << velocity;
+    EXPECT_EQ(squares("1.0", velocity), 1u) << velocity;
+  }
 }
 
 }  // namespace

@@ -143,8 +143,10 @@ system::State assembled_start(const Location& where, const system::Mechanism& me
                               std::vector<std::string>& warnings, bool moves) {
   system::MechanismEquations equations(mechanism);
   const bool has_rates = moves && !mechanism.model().start_rates.empty();
+  system::State given = mechanism.start();
+  if (!moves) given.v.setZero();
   const ConsistentStart start =
-      has_rates ? start_with_rates(equations, warnings) : make_consistent_on_locks(equations, mechanism.start());
+      has_rates ? start_with_rates(equations, warnings) : make_consistent_on_locks(equations, given, !moves);
   const auto coordinate = [&](Index i) { return mechanism.coordinates()[static_cast<std::size_t>(i)]; };
   if (start.is_assembled && start.worst_rate >= 0) {
     std::vector<std::string> drives;

@@ -68,7 +68,8 @@ bool release_pulling_stop(const system::Mechanism& mechanism, system::State& sta
   return true;
 }
 
-ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, const system::State& given) {
+ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, const system::State& given,
+                                         bool stands) {
   const auto& locks = equations.mechanism().model().locks;
   std::vector<std::size_t> met;
   system::State phases = given;
@@ -79,6 +80,12 @@ ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, 
   }
   ConsistentStart result = make_consistent(equations, phases);
   if (met.empty() || !result.is_consistent) return result;
+  const auto balance = [&](system::State& state) {
+    return stands ? find_acceleration_at_rest(equations, state, model::Side::right)
+                  : find_acceleration(equations, state, model::Side::right);
+  };
+  if (stands) result.is_consistent = balance(result.state);
+  if (!result.is_consistent) return result;
   const auto engage_where = [&](system::State& state, auto&& holds) {
     bool has_changed = false;
     for (const std::size_t i : met) {
@@ -99,7 +106,7 @@ ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, 
     const bool has_changed = release_pulling_stop(equations.mechanism(), state) ||
                              engage_where(state, [](const Approach& approach) { return approach.presses(); });
     if (!has_changed) break;
-    result.is_consistent = find_acceleration(equations, state, model::Side::right);
+    result.is_consistent = balance(state);
     if (!result.is_consistent) break;
   }
   return result;

@@ -11,7 +11,10 @@ namespace rubato::integrate {
 ///   velocities that lead against a stop: it engages, and a rigid one takes them
 ///   velocities that lead away from it: it is open
 ///   neither: it is engaged where it presses, and open where the parts accelerate away or nothing presses
-ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, const system::State& given);
+///
+/// @param stands  the state is one at rest, of statics or modes: neither velocities nor the rates of drives decide
+ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, const system::State& given,
+                                         bool stands = false);
 
 /// Opens one rigid stop that the start lies on and that would pull. Returns whether there was one.
 bool release_pulling_stop(const system::Mechanism& mechanism, system::State& state);
