@@ -167,5 +167,22 @@ TEST(StartRatesFault, NamesWhatTakesNone) {
               HasSubstr("rate"));
 }
 
+// A velocity of zero that is given counts as one that is not zero: the other node moves along the strut, by 1 m/s more.
+TEST(StartRatesOfNodes, KeepTheZeroThatIsGiven) {
+  const auto node = [](const char* name, const char* keys) {
+    return std::string("[[node]]\nname = \"") + name + "\"\n" + keys + "\n[[mass]]\nnode = \"" + name +
+           "\"\nmass = 1.0\n";
+  };
+  const MechanismStudy ran(
+      node("n", "position = [0.0, 0.0]\nvelocity = [0.0, 1.0]") + node("m", "position = [1.0, 1.0]") +
+      "[[joint]]\nname = \"strut\"\ntype = \"strut\"\nbetween = [\"n\", \"m\"]\nrate = 1.0\n" + short_run);
+  expect_quiet(ran);
+  const double along = 1.0 + std::sqrt(0.5);
+  EXPECT_NEAR(ran.at(0, "run", "velocity", "n.x"), 0.0, 1e-12);
+  EXPECT_NEAR(ran.at(0, "run", "velocity", "n.y"), 1.0, 1e-12);
+  EXPECT_NEAR(ran.at(0, "run", "velocity", "m.x"), along * std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(ran.at(0, "run", "velocity", "m.y"), along * std::sqrt(0.5), 1e-12);
+}
+
 }  // namespace
 }  // namespace rubato

@@ -120,7 +120,7 @@ void take_node(MechanismAssembly& assembly, const BuiltStructure& built, std::si
     if (!is_free(axis)) continue;
     const NodeCoordinate& coordinate = built.coordinates[static_cast<std::size_t>(places[axis])];
     mechanism.nodes[static_cast<std::size_t>(node)].velocity[axis] = coordinate.velocity;
-    mechanism.nodes[static_cast<std::size_t>(node)].has_velocity[axis] = coordinate.velocity != 0.0;
+    mechanism.nodes[static_cast<std::size_t>(node)].has_velocity[axis] = coordinate.has_velocity;
     const double mass = coordinate.mass;
     if (axis == 0) assembly.mass += mass;
     if (is_rotation(axis)) assembly.inertia += mass;

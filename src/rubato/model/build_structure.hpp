@@ -13,8 +13,9 @@ namespace rubato::model {
 struct NodeCoordinate {
   std::string name;  ///< "7.rz"
   bool is_rotation = false;
-  double mass = 0.0;      ///< point masses [kg], or inertias [kg m2]
-  double velocity = 0.0;  ///< at the start [m/s] or [rad/s]
+  double mass = 0.0;          ///< point masses [kg], or inertias [kg m2]
+  double velocity = 0.0;      ///< at the start [m/s] or [rad/s]
+  bool has_velocity = false;  ///< whether it is given, and not left out
 };
 
 /// A beam or truss that has a name, and its elements.

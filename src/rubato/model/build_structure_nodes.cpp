@@ -41,7 +41,10 @@ void StructureNodes::take_velocity(const NodeDescription& node, NodeState& state
                              : axes.size() == 2 ? "two"
                                                 : "three",
                              axes.size() == 1 ? "" : "s", in_plane() ? "in the plane" : "in space", values.size()));
-    for (std::size_t i = 0; i < axes.size(); ++i) state.velocity[axes[i]] = evaluated(values[i], what);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      state.velocity[axes[i]] = evaluated(values[i], what);
+      state.has_velocity[axes[i]] = true;
+    }
   };
   static constexpr std::array<std::size_t, 6> axes{0, 1, 2, 3, 4, 5};
   const std::size_t translations = in_plane() ? 2 : 3;
@@ -79,8 +82,11 @@ Index StructureNodes::add_between(const std::string& name, const Location& where
                                   double share) {
   const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(last);
   add(name, where, (1.0 - share) * structure_.positions[a] + share * structure_.positions[b]);
-  for (std::size_t axis = 0; axis < 6; ++axis)
-    states_.back().velocity[axis] = (1.0 - share) * states_[a].velocity[axis] + share * states_[b].velocity[axis];
+  NodeState& between = states_.back();
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    between.velocity[axis] = (1.0 - share) * states_[a].velocity[axis] + share * states_[b].velocity[axis];
+    between.has_velocity[axis] = states_[a].has_velocity[axis] && states_[b].has_velocity[axis];
+  }
   return static_cast<Index>(states_.size()) - 1;
 }
 
@@ -228,7 +234,8 @@ void StructureNodes::number(Index offset, BuiltStructure& built) {
         continue;
       }
       places[axis] = offset + static_cast<Index>(built.coordinates.size());
-      built.coordinates.push_back({std::move(name), is_rotation(axis), state.mass[axis], state.velocity[axis]});
+      built.coordinates.push_back(
+          {std::move(name), is_rotation(axis), state.mass[axis], state.velocity[axis], state.has_velocity[axis]});
     }
     structure_.places.push_back(places);
   }

@@ -44,7 +44,7 @@ class StructureNodes {
 
  private:
   struct NodeState {
-    std::array<bool, 6> is_fixed{};
+    std::array<bool, 6> is_fixed{}, has_velocity{};  // the latter: it is given
     std::array<double, 6> mass{}, velocity{};
     /// Of translations and of rotations: the sum of d d^T over unit vectors d along or about which something at the
     /// node has an inertia of its own. A direction in which it is zero has none.
