@@ -77,7 +77,11 @@ bool ContactEvents::accepted(const system::State& before, const system::State& a
       // A load that jumps, or rises from zero, changes it where a step begins.
       const int then = is_located ? branch_at(false) : one.branch;
       if (then != one.branch) note_law(one, then, before.t);
-      const int now = is_located ? branch_at(true) : branch_of_law(one.contact, after);
+      const bool is_block = one.contact >= system_.first_block();
+      const int now = is_located ? branch_at(true)
+                      : located_ && is_block
+                          ? static_cast<int>(located_->contact_of_block(system_.block_at(one.contact), after))
+                          : branch_of_law(one.contact, after);
       if (now != one.branch) note_law(one, now, after.t);
       continue;
     }

@@ -91,7 +91,8 @@ bool StructureTimeline::has_ended_at(Index contact, const system::State& from, c
 Passage StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
   bool has_kink = false, has_jump = false;
   beyond_.slider_force = state.slider_force;
-  for (Index i = 0; i < system_.first_law(); ++i) {
+  for (Index i = 0; i < system_.contact_count(); ++i) {
+    if (i >= system_.first_law() && !is_gap(i)) continue;
     const Watch watch = watch_of(i, before);
     if (watch == Watch::nothing || watch == Watch::rest_after_positive || watch == Watch::rest_after_negative) continue;
     if (!has_ended_at(i, before, state)) continue;
@@ -101,7 +102,11 @@ Passage StructureTimeline::pass(const system::State& before, system::State& stat
       beyond_.slider_force[i] -= shift * system_.sliders()[static_cast<std::size_t>(i)].stiffness * path.v1;
       continue;
     }
-    const auto& stop = stop_of(i);
+    if (i >= system_.first_block()) {
+      go_on_beyond(i, shift, watch != Watch::opening, state);
+      continue;
+    }
+    const Gap stop = gap_of(i);
     const double rate = stop.stiffness * path.v1 + stop.damping * path.final_acceleration();
     if (watch == Watch::closing && stop.damping > 0.0) {
       has_jump = true;
@@ -124,6 +129,31 @@ Passage StructureTimeline::pass(const system::State& before, system::State& stat
   return Passage::continues;
 }
 
+/// The rates that the forces of a contact gain where its ends meet, or lose where they part.
+void StructureTimeline::go_on_beyond(Index contact, double shift, bool closes, const system::State& state) {
+  const Index b = system_.block_at(contact), first = system_.row_of_block(b);
+  const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(b)].law;
+  const Index across = law.size() - 1;
+  const Gap gap = gap_of(contact);
+  model::BlockPoint point = system_.block_point(b, state), beyond = point;
+  if (!closes) {  // friction goes down with what presses
+    const double rate = gap.stiffness * point.rate[across], pressed = state.slider_force[contact];
+    for (Index i = 0; i < across && pressed > 0.0; ++i)
+      beyond_.slider_force[first + i] -= shift * rate * state.slider_force[first + i] / pressed;
+    beyond_.slider_force[contact] -= shift * rate;
+    return;
+  }
+  // As it goes on from the gap.
+  point.u[across] = gap.gap;
+  std::copy_n(point.u, law.size(), beyond.u);
+  for (Index i = 0; i < law.size(); ++i) beyond.u[i] += std::abs(shift) * point.rate[i];
+  const Vector rest = Vector::Zero(law.memory_size());
+  Vector next = rest;
+  const model::BlockAnswer answer = law.advance(point, rest.data(), beyond, next.data());
+  for (Index i = 0; i < law.size(); ++i)
+    beyond_.slider_force[first + i] += (shift < 0.0 ? -1.0 : 1.0) * answer.force[i];
+}
+
 StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::State& from,
                                                    const system::State& to) const {
   return {to.t - from.t, system_.relative_displacement(contact, from.q), system_.relative_displacement(contact, from.v),
@@ -131,7 +161,7 @@ StructureTimeline::Path StructureTimeline::path_of(Index contact, const system::
 }
 
 StructureTimeline::Watch StructureTimeline::watch_of(Index contact, const system::State& from) const {
-  if (contact >= system_.first_block()) return Watch::nothing;
+  if (contact >= system_.first_block()) return is_gap(contact) ? watch_of_stop(contact, from) : Watch::nothing;
   if (contact >= system_.first_law()) return watches_sliders_ ? Watch::law : Watch::nothing;
   if (contact >= system_.slider_count()) return watch_of_stop(contact, from);
   return watches_sliders_ ? watch_of_slider(contact, from) : Watch::nothing;
@@ -163,7 +193,7 @@ StructureTimeline::Watch StructureTimeline::watch_of_slider(Index i, const syste
 
 // At the gap, to what a located step leaves, the velocity tells.
 StructureTimeline::Watch StructureTimeline::watch_of_stop(Index i, const system::State& from) const {
-  const auto& stop = stop_of(i);
+  const Gap stop = gap_of(i);
   const double depth = system_.relative_displacement(i, from.q) - stop.gap;
   const double velocity = system_.relative_displacement(i, from.v);
   const double size = size_of(system_, i, from.q) + std::abs(stop.gap);
@@ -186,7 +216,7 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
     case Watch::rest_after_negative:
       return {-path.v1, -path.final_acceleration()};
     case Watch::closing: {
-      const auto& stop = stop_of(guard);
+      const Gap stop = gap_of(guard);
       const double size = size_of(system_, guard, to.q) + std::abs(stop.gap);
       // Held at the gap by the force of the step itself: how long ago it closed only the bracket tells.
       if (stop.damping > 0.0 && to.slider_force[guard] > 0.0 && path.u1 - stop.gap <= round_off * size)
@@ -195,7 +225,7 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
     }
     case Watch::opening:
     case Watch::pushing_again: {
-      const auto& stop = stop_of(guard);
+      const Gap stop = gap_of(guard);
       const double sign = watch_of(guard, from) == Watch::opening ? 1.0 : -1.0;
       if (sign < 0.0 && path.u1 <= stop.gap) return {1.0, 0.0};  // left before
       return {sign * (stop.stiffness * (path.u1 - stop.gap) + stop.damping * path.v1),
@@ -246,6 +276,14 @@ model::Law::Contact StructureTimeline::contact_of_law(Index law, const system::S
   return watched.contact(pressed_.going_on(law, before, after, at_end ? 1.0 : 0.0, near), memory, near);
 }
 
+model::Law::Contact StructureTimeline::contact_of_block(Index block, const system::State& state) const {
+  const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(block)].law;
+  model::BlockPoint point = system_.block_point(block, state);
+  const Index across = law.size() - 1;
+  point.u[across] += 2.0 * resolution_ * point.rate[across];
+  return law.contact(point, state.memory.data() + system_.memory_of_block(block));
+}
+
 int StructureTimeline::branch_after(Index contact, const system::State& before, const system::State& after) {
   const Watch watch = watch_of(contact, before);
   if (watch == Watch::nothing || !has_ended_at(contact, before, after)) return branch(contact, after);
@@ -277,12 +315,12 @@ double StructureTimeline::share_of(Index contact, const system::State& from, con
     case Watch::rest_after_negative:
       return root([&](double s) { return -path.velocity(s); });
     case Watch::closing: {
-      const auto& stop = stop_of(contact);
+      const Gap stop = gap_of(contact);
       return root([&](double s) { return stop.gap - path.displacement(s); });
     }
     case Watch::opening:
     case Watch::pushing_again: {
-      const auto& stop = stop_of(contact);
+      const Gap stop = gap_of(contact);
       const double sign = watch == Watch::opening ? 1.0 : -1.0;
       return root([&](double s) {
         return sign * (stop.stiffness * (path.displacement(s) - stop.gap) + stop.damping * path.velocity(s));
@@ -307,8 +345,20 @@ Crossing StructureTimeline::first_crossing(const system::State& from, const syst
   return first;
 }
 
-const model::Stop& StructureTimeline::stop_of(Index contact) const {
-  return system_.stops()[static_cast<std::size_t>(contact - system_.slider_count())];
+bool StructureTimeline::is_gap(Index contact) const {
+  if (contact < system_.first_block()) return contact >= system_.slider_count() && contact < system_.first_law();
+  const Index block = system_.block_at(contact);
+  const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(block)].law;
+  return contact == system_.row_of_block(block) + law.size() - 1;
+}
+
+StructureTimeline::Gap StructureTimeline::gap_of(Index contact) const {
+  if (contact < system_.first_block()) {
+    const model::Stop& stop = system_.stops()[static_cast<std::size_t>(contact - system_.slider_count())];
+    return {stop.gap, stop.stiffness, stop.damping};
+  }
+  const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(system_.block_at(contact))].law;
+  return {law.clearance(), law.limit_stiffness(law.size() - 1, true), 0.0};
 }
 
 }  // namespace rubato::integrate

@@ -14,6 +14,7 @@ namespace rubato::integrate {
 ///   pushing stop      k (u - gap) + c du/dt          the force vanishes
 ///   lagging stop      the negative of that           a damped stop that has let go pushes again before it is open
 ///   other law         Law::guard()                   it goes on by another formula
+///   contact           as an undamped stop            its ends meet or part
 ///
 /// A slider at its limit slips if it moves outward, or if it is at rest and is accelerated outward.
 class StructureTimeline final : public Timeline {
@@ -38,6 +39,8 @@ class StructureTimeline final : public Timeline {
   int branch_after(Index contact, const system::State& before, const system::State& after);
   /// How a law that sticks goes on at the end of such a step, or went on at its start.
   model::Law::Contact contact_of_law(Index law, const system::State& before, const system::State& after, bool at_end);
+  /// How a contact goes on from a state.
+  model::Law::Contact contact_of_block(Index block, const system::State& state) const;
 
  private:
   enum class Watch { nothing, limit, rest_after_positive, rest_after_negative, closing, opening, pushing_again, law };
@@ -48,7 +51,13 @@ class StructureTimeline final : public Timeline {
   Watch watch_of_slider(Index slider, const system::State& from) const;
   Watch watch_of_stop(Index contact, const system::State& from) const;
   double share_of(Index contact, const system::State& from, const system::State& to);
-  const model::Stop& stop_of(Index contact) const;
+  /// What pushes where a gap is closed: a stop, or the normal direction of a contact.
+  struct Gap {
+    double gap, stiffness, damping;
+  };
+  Gap gap_of(Index contact) const;
+  bool is_gap(Index contact) const;
+  void go_on_beyond(Index contact, double shift, bool closes, const system::State& state);
   double guard_of_law(Index contact, const system::State& from, const system::State& to, double share);
   bool has_ended_at(Index contact, const system::State& from, const system::State& to);
 

@@ -183,10 +183,10 @@ std::unique_ptr<Estimator> make_embedded(const Embedded& kind, const Method& met
                                          const system::LocallyNonlinear& system, Stepper& stepper, double duration,
                                          const std::vector<numerics::StepBound>& bounds) {
   const auto* wilson = std::get_if<WilsonTheta>(&method.formula);
-  if (wilson && system.stop_count() > 0)
+  if (wilson && (system.stop_count() > 0 || system.block_count() > 0))
     throw InvalidInput(
         "the estimator embedded of wilson_theta compares two solutions of which one looks beyond the end of a step, at "
-        "stops that the motion has not met; take the estimator local_error");
+        "stops and contacts that the motion has not met; take the estimator local_error");
   if (wilson) return std::make_unique<WilsonEstimator>(kind.tolerance, wilson->theta, system, duration, bounds);
   if (!can_embed(method))
     throw InvalidInput(fmt::format(

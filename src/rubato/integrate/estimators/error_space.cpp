@@ -31,9 +31,14 @@ class StructureSpace final : public ErrorSpace {
   double promised_size(const ResponseScales& scales) override {
     return scales.size(promised() > 0.0 ? promised() : HUGE_VAL);
   }
-  bool has_stops() const override { return system_.stop_count() > 0; }
+  bool has_stops() const override { return system_.stop_count() > 0 || system_.block_count() > 0; }
   bool touches(const system::State& state) const override {
-    return (state.slider_force.segment(system_.slider_count(), system_.stop_count()).array() > 0.0).any();
+    if ((state.slider_force.segment(system_.slider_count(), system_.stop_count()).array() > 0.0).any()) return true;
+    for (Index b = 0; b < system_.block_count(); ++b) {
+      const Index across = system_.blocks()[static_cast<std::size_t>(b)].law->size() - 1;
+      if (state.slider_force[system_.row_of_block(b) + across] > 0.0) return true;
+    }
+    return false;
   }
   bool is_damped() const override { return system_.damping().nonZeros() > 0; }
   double remembered_squared(const Vector& x) override { return memory_.squared(x); }

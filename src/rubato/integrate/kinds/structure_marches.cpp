@@ -95,7 +95,7 @@ void StructureMarches::plan_events(const std::string& title, const model::StepDe
                                    "equal steps",
                                    title, plan.method.name, system_.blocks().front().name));
   step.locate_sliders = is_pair || description.locate_events.has_value();
-  step.locate_events = description.locate_events.value_or(system_.stop_count() > 0 ||
+  step.locate_events = description.locate_events.value_or(system_.stop_count() > 0 || system_.block_count() > 0 ||
                                                           (is_pair && (system_.slider_count() > 0 || has_memory)));
 }
 
@@ -118,7 +118,7 @@ double StructureMarches::largest_step(const std::string& title, const model::Ste
 }
 
 EstimatorKind StructureMarches::default_estimator(const MarchPlan& plan, double tolerance) const {
-  return integrate::default_estimator(plan.method, tolerance, system_.stop_count() > 0);
+  return integrate::default_estimator(plan.method, tolerance, system_.stop_count() > 0 || system_.block_count() > 0);
 }
 
 void StructureMarches::try_estimator(const MarchPlan& plan, const AutomaticStep& step) const {
