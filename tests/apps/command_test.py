@@ -261,7 +261,8 @@ duration = 1.0
             self.assertIn(law, table)
         column = lines[0].index("harmonic_balance")
         self.assertTrue(table["bouc_wen"][column:].startswith("by samples"))
-        self.assertTrue(table["stop"][column:].startswith("- "))
+        self.assertTrue(table["contact"][column:].startswith("by samples"))
+        self.assertTrue(table["joint friction"][column:].startswith("- "))
         self.assertIn('  laws under periodic: take solver = "harmonic_balance" or "time_marching"', lines)
 
     def test_methods_and_schema_and_examples_answer_on_stdout(self):

@@ -29,11 +29,9 @@ constexpr std::array<RouteInfo, route_count> routes{
     RouteInfo{"method_study", "a method study"},
 };
 
-constexpr const char* a_march = "take solver = \"time_marching\"";
 constexpr const char* balance_or_march = "take solver = \"harmonic_balance\" or \"time_marching\"";
 constexpr const char* small_steps = "take \"generalized_alpha\" with step = { tolerance = ... }";
 constexpr const char* located = "take \"generalized_alpha\" with step = { tolerance = ..., events = \"locate\" }";
-constexpr const char* marched_sweep = "take a frequency_response with solver = \"time_marching\" and a sweep";
 constexpr const char* balanced_sweep = "take a frequency_response with solver = \"harmonic_balance\" and a sweep";
 constexpr const char* transient = "take a transient";
 
@@ -54,15 +52,15 @@ constexpr Row slider{
     refuses(),             // method_study
 };
 constexpr Row stop{
-    takes("yes"),            // steps
-    refuses(located),        // exact
-    takes("yes"),            // equilibrium
-    takes("open"),           // modes
-    refuses(a_march),        // periodic
-    refuses(a_march),        // harmonic_balance
-    takes("yes"),            // time_marching
-    refuses(marched_sweep),  // damper_curve
-    refuses(),               // method_study
+    takes("yes"),               // steps
+    refuses(located),           // exact
+    takes("yes"),               // equilibrium
+    takes("open"),              // modes
+    refuses(balance_or_march),  // periodic
+    takes("by samples"),        // harmonic_balance
+    takes("yes"),               // time_marching
+    refuses(balanced_sweep),    // damper_curve
+    refuses(),                  // method_study
 };
 constexpr Row law{
     takes("yes"),               // steps
@@ -76,26 +74,26 @@ constexpr Row law{
     refuses(),                  // method_study
 };
 constexpr Row contact{
-    takes("yes"),          // steps
-    refuses(small_steps),  // exact
-    takes("yes"),          // equilibrium
-    takes("stuck, free"),  // modes
-    refuses(transient),    // periodic
-    refuses(transient),    // harmonic_balance
-    refuses(transient),    // time_marching
-    refuses(transient),    // damper_curve
-    refuses(),             // method_study
+    takes("yes"),               // steps
+    refuses(small_steps),       // exact
+    takes("yes"),               // equilibrium
+    takes("stuck, free"),       // modes
+    refuses(balance_or_march),  // periodic
+    takes("by samples"),        // harmonic_balance
+    takes("yes"),               // time_marching
+    refuses(balanced_sweep),    // damper_curve
+    refuses(),                  // method_study
 };
 constexpr Row pressed_slider{
-    takes("yes"),            // steps
-    refuses(small_steps),    // exact
-    takes("yes"),            // equilibrium
-    takes("stuck, free"),    // modes
-    refuses(a_march),        // periodic
-    refuses(a_march),        // harmonic_balance
-    takes("yes"),            // time_marching
-    refuses(marched_sweep),  // damper_curve
-    refuses(),               // method_study
+    takes("yes"),               // steps
+    refuses(small_steps),       // exact
+    takes("yes"),               // equilibrium
+    takes("stuck, free"),       // modes
+    refuses(balance_or_march),  // periodic
+    takes("by samples"),        // harmonic_balance
+    takes("yes"),               // time_marching
+    refuses(balanced_sweep),    // damper_curve
+    refuses(),                  // method_study
 };
 constexpr Row joint_friction{
     takes("yes"),          // steps

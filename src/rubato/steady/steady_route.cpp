@@ -1,5 +1,4 @@
 #include <rubato/steady/harmonic_balance/harmonic_balance.hpp>
-#include <rubato/steady/linear/linear_limits.hpp>
 #include <rubato/steady/linear/linear_response.hpp>
 #include <rubato/steady/periodic/periodic_solver.hpp>
 #include <rubato/steady/steady_route.hpp>
@@ -13,7 +12,7 @@ bool is_linear(const LocallyNonlinear& system) { return system.slider_count() ==
 
 std::unique_ptr<SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
                                      const SteadyRequest& request, bool stuck) {
-  return std::make_unique<LinearResponse>(system, linear_limit(system, stuck), request, route.linear);
+  return std::make_unique<LinearResponse>(limit(system, stuck, request, route.linear));
 }
 
 std::unique_ptr<SteadySolver> periodic(const SteadyRoute& route, const LocallyNonlinear& system,

@@ -50,7 +50,7 @@ struct SteadyResponse {
   Vector dissipated;                            ///< friction work of each slider over a period [m] [J]
   Vector slip_share;                            ///< part of the period in which each slider slips [m] [-]
   Vector offset;                                ///< fc - kT u where a slider never slips, else 0 [m] [N]
-  Vector law_dissipated;                        ///< by each of the other laws over a period [laws] [J]
+  Vector law_dissipated;                        ///< by each of the other laws, then each block [laws + blocks] [J]
   double viscous_work = 0.0, input_work = 0.0;  ///< over a period [J]
   long transitions = 0;                         ///< stick to slip and back, in a period
   /// Displacement of each observed over a period, where the status is drifting; else empty [o] [m]. The amplitudes are

@@ -475,17 +475,15 @@ TEST(FrequencyResponse, OfAModelWithAStopIsMarched) {
   }
 }
 
-TEST(FrequencyResponse, OfOtherSolversRefusesStopsAndSaysWhatTakesThem) {
-  for (const std::string solver : {"periodic", "harmonic_balance"}) {
-    const PreparedStudy prepared(bumper_text + "solver = \"" + solver + "\"\n");
-    try {
-      (void)plan_of(prepared);
-      FAIL() << solver;
-    } catch (const InvalidInput& fault) {
-      EXPECT_EQ(fault.message(), "analysis \"frf\": the solver " + solver +
-                                     " knows sliders, and the model has the stop \"bumper\"; take solver = "
-                                     "\"time_marching\"");
-    }
+TEST(FrequencyResponse, ByThePeriodicSolverRefusesStopsAndSaysWhatTakesThem) {
+  const PreparedStudy prepared(bumper_text + "solver = \"periodic\"\n");
+  try {
+    (void)plan_of(prepared);
+    FAIL();
+  } catch (const InvalidInput& fault) {
+    EXPECT_EQ(fault.message(),
+              "analysis \"frf\": the solver periodic knows sliders, and the model has the stop \"bumper\"; take solver = "
+              "\"harmonic_balance\" or \"time_marching\"");
   }
 }
 

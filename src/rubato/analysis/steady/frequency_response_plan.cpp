@@ -98,7 +98,7 @@ Route route_of(steady::SteadyRoute::Kind kind) {
 /// What is described, with the solver that is taken where none is named.
 Description with_route(Description description, const StudyInput& input) {
   const bool is_named = description.route_where.line > 0;
-  if (!is_named && description.route == Description::Route::periodic && input.structure().law_count() > 0)
+  if (!is_named && description.route == Description::Route::periodic && input.structure().has_laws())
     description.route = refusal(Route::harmonic_balance, input.kind) ? Description::Route::time_marching
                                                                      : Description::Route::harmonic_balance;
   return description;

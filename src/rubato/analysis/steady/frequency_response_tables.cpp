@@ -1,5 +1,6 @@
 #include <rubato/analysis/steady/frequency_response_columns.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
+#include <rubato/results/columns/block_columns.hpp>
 #include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/results/columns/law_columns.hpp>
 
@@ -151,6 +152,9 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   const results::LawColumns laws(input.structure(), false);
   laws.add({"dissipated", "J", "by a law over a period"}, blocks);
   laws_ = laws.order();
+  const results::BlockColumns contacts(input.structure(), false);
+  contacts.add({"dissipated", "J", "by a contact over a period"}, blocks);
+  for (Index b = 0; b < input.structure().block_count(); ++b) laws_.push_back(input.structure().law_count() + b);
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));
   blocks.push_back(scalar("input_work", "J", "work of the loads over a period"));
   blocks.push_back(scalar("transitions", "1", "from stick to slip and back, in a period"));

@@ -45,6 +45,10 @@ void BlockColumns::add(TableLayout& layout) const {
     layout.blocks.push_back({"dissipated", "J", "dissipated by a contact since the start", "contact", names});
 }
 
+void BlockColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {
+  if (!all_.empty()) blocks.push_back({names.variable, names.unit, names.description, "contact", names_of(all_)});
+}
+
 void BlockColumns::book(const system::State& before, const system::State& after) {
   for (const Index b : all_) dissipated_[b] += integrate::dissipated_by_block(system_, b, before, after);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/results/columns/column_group.hpp>
+#include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
 #include <string>
@@ -16,6 +17,8 @@ class BlockColumns final : public ColumnGroup {
   BlockColumns(const system::LocallyNonlinear& system, bool in_motion);
 
   void add(TableLayout& layout) const override;
+  /// One block of all contacts.
+  void add(const ColumnNames& names, std::vector<Block>& blocks) const;
   bool has_sums() const override { return in_motion_ && system_.block_count() > 0; }
   void book(const system::State& before, const system::State& after) override;
   void append(const system::State& state, std::vector<double>& row) override { append_since(state, state, row); }

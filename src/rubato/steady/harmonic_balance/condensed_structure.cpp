@@ -21,14 +21,29 @@ double holding_stiffness_of(const std::vector<model::Share>& column, double stif
   return of_structure > 0.0 ? std::min(stiffness, of_structure) : stiffness;
 }
 
-// That of a law which does not resist at rest: any will do.
-double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index law, const Vector& diagonal) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+}  // namespace
+
+double contact_stiffness(const system::LocallyNonlinear& system, Index contact) {
+  if (contact < system.first_law())
+    return system.stops()[static_cast<std::size_t>(contact - system.slider_count())].stiffness;
+  if (contact >= system.first_block()) {
+    const Index block = system.block_at(contact);
+    return system.blocks()[static_cast<std::size_t>(block)].law->limit_stiffness(contact - system.row_of_block(block),
+                                                                                 true);
+  }
+  const Index law = contact - system.first_law();
   const Vector memory = Vector::Zero(system.memory_size());
   const model::Law& one = *system.laws()[static_cast<std::size_t>(law)].law;
-  const double at_rest = one.at({}, memory.data() + system.memory_of(law)).by_u + one.sticking_stiffness();
-  const double held =
-      holding_stiffness_of(system.column(system.first_law() + law), at_rest > 0.0 ? at_rest : infinity, diagonal);
+  return one.at({}, memory.data() + system.memory_of(law)).by_u + one.sticking_stiffness();
+}
+
+namespace {
+
+// That of a law which does not resist at rest: any will do.
+double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index contact, const Vector& diagonal) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double at_rest = contact_stiffness(system, contact);
+  const double held = holding_stiffness_of(system.column(contact), at_rest > 0.0 ? at_rest : infinity, diagonal);
   return std::isfinite(held) ? held : 1.0;
 }
 
@@ -36,20 +51,18 @@ double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index la
 
 CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
                                        const std::vector<SteadyRequest::Observed>& observed) {
-  const Index n = system.size(), sliders = system.slider_count(), m = sliders + system.law_count();
+  const Index n = system.size(), sliders = system.slider_count(), m = system.contact_count();
   columns_ =
       std::make_unique<Columns>(Columns{system, Vector(m), Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
   const Vector diagonal = system.stiffness().diagonal();
   for (Index i = 0; i < m; ++i) {
-    const Index contact = i < sliders ? i : system.first_law() + i - sliders;
-    const std::vector<model::Share> column = system.column(contact);
+    const std::vector<model::Share> column = system.column(i);
     for (const auto& [place, weight] : column) columns_->sliders(place, i) += weight;
     if (i < sliders) {
       columns_->slider_stiffness[i] = system.sliders()[static_cast<std::size_t>(i)].stiffness;
       columns_->holding_stiffness[i] = holding_stiffness_of(column, columns_->slider_stiffness[i], diagonal);
     } else {
-      columns_->slider_stiffness[i] = columns_->holding_stiffness[i] =
-          holding_stiffness_of_law(system, i - sliders, diagonal);
+      columns_->slider_stiffness[i] = columns_->holding_stiffness[i] = holding_stiffness_of_law(system, i, diagonal);
     }
   }
   const auto entries = static_cast<double>(system.damping().nonZeros());

@@ -6,6 +6,9 @@
 
 namespace rubato::steady {
 
+/// How a stop, a law or a row of a block resists where it is closed and sticks, or at rest [N/m].
+double contact_stiffness(const system::LocallyNonlinear& system, Index contact);
+
 /// A linear structure seen through a few columns P = [B | E | O]: the directions of the sliders and of other laws, the
 /// patterns of the loads and the observed coordinates. All of the former are called sliders here: what their forces are
 /// does not matter.

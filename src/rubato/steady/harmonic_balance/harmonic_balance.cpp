@@ -27,6 +27,9 @@ constexpr double most_work = 1e9, followed = 1000.0;
 // An answer whose error falls as one over its orders is twice as far off as from that with two thirds of the orders.
 constexpr double caution = 2.0;
 
+// Orders that groups of laws begin with.
+constexpr int fewest_for_groups = 8;
+
 // The orders a step adds: enough to pay for solving again.
 int more(int count) { return count + std::max(1, count / 2); }
 
@@ -50,15 +53,23 @@ HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonli
       sliders(s.slider_count()),
       patterns(s.size(), 0) {
   for (const model::LawBetween& law : s.laws())
-    if (law.law->takes_normal() && (law.normal.formula || law.normal.depends_on_motion()))
-      throw InvalidInput(
-          fmt::format("harmonic balance samples laws under normal forces that stay the same, and that of "
-                      "\"{}\" does not; take solver = \"time_marching\"",
-                      law.name));
+    if (law.law->takes_normal() && law.normal.formula)
+      throw InvalidInput(fmt::format(
+          "harmonic balance samples laws that repeat with the loads, and what presses on \"{}\" is a formula "
+          "of t; take a transient",
+          law.name));
+  for (const model::Stop& stop : s.stops())
+    if (stop.damping > 0.0)
+      throw InvalidInput(fmt::format(
+          "harmonic balance samples stops whose force is continuous, and that of \"{}\" jumps where it closes, "
+          "by its damping; take solver = \"time_marching\", or damping = 0",
+          stop.name));
   stiffness = structure.holding_stiffness();
   for (Index j = 0; j < sliders; ++j) stiffness[j] = s.sliders()[static_cast<std::size_t>(j)].stiffness;
+  for (Index j = sliders; j < stiffness.size(); ++j)
+    if (j < s.first_law() || j >= s.first_block()) stiffness[j] = contact_stiffness(s, j);
   limits = Vector::Constant(stiffness.size(), infinity);
-  equations.emplace_back(stiffness, structure.holding_stiffness(), s.laws());
+  equations.emplace_back(stiffness, structure.holding_stiffness(), s);
   highest_frequency = structure.highest_frequency();
   forget();
 }
@@ -69,8 +80,9 @@ void HarmonicBalanceSolver::Implementation::forget_points() {
   count_wanted = 1;
   firmness = 0.0;
   samples_wanted = 0;
-  laws_are_odd = std::all_of(system.laws().begin(), system.laws().end(),
-                             [](const model::LawBetween& law) { return law.law->is_odd(); });
+  laws_are_odd =
+      equations.front().groups().empty() && std::all_of(system.laws().begin(), system.laws().end(),
+                                                        [](const model::LawBetween& law) { return law.law->is_odd(); });
 }
 
 void HarmonicBalanceSolver::Implementation::forget() {
@@ -86,7 +98,7 @@ void HarmonicBalanceSolver::Implementation::forget() {
 // stiffer than it can follow.
 bool HarmonicBalanceSolver::Implementation::can_be_shot(const system::Excitation& excitation, SteadyStart start) {
   const Index n = system.size(), m = stiffness.size();
-  if (n > largest_rigid || m == 0 || system.law_count() > 0 || start == SteadyStart::previous) return false;
+  if (n > largest_rigid || m == 0 || has_laws() || start == SteadyStart::previous) return false;
   if (!fastest) {
     const auto highest = [&](const SparseMatrix& k) {
       const Vector squares = numerics::all_modes(k, system.mass()).eigenvalues;
@@ -118,7 +130,7 @@ system::LocallyNonlinear HarmonicBalanceSolver::Implementation::with_contacts_up
 // which a series cannot, or its contacts stick and slip so sharply that more orders than there are would be needed.
 bool HarmonicBalanceSolver::Implementation::shoot(const system::Excitation& excitation, SteadyStart start,
                                                   SteadyResponse& response) {
-  if (system.size() > largest_rigid || stiffness.size() == 0 || system.law_count() > 0) return false;
+  if (system.size() > largest_rigid || stiffness.size() == 0 || has_laws()) return false;
   if (!may_walk) may_walk = (numerics::all_modes(system.stiffness(), system.mass()).eigenvalues.array() == 0.0).any();
   const bool may_repeat = can_condense && can_be_shot(excitation, start);
   if (!*may_walk && !may_repeat) return false;
@@ -216,7 +228,9 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
   for (const int k : request.harmonics)
     if (k <= options.most_harmonics) order = std::max(order, k);
   const int most = std::max(options.most_harmonics - 1, order - 1) / stride + 1;
-  int count = std::max((order - 1 + stride - 1) / stride + 1, std::min(count_wanted, most));
+  // The balance of few orders may be none of the motion where contacts open, slip and close.
+  const int least = eq.groups().empty() ? 1 : fewest_for_groups;
+  int count = std::max((order - 1 + stride - 1) / stride + 1, std::min(std::max(count_wanted, least), most));
   const int first_iteration = response.iterations;
   const int most_iterations = effort == Effort::brief     ? most_brief_iterations
                               : effort == Effort::limited ? most_limited_iterations
@@ -250,7 +264,7 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
       return false;
     }
     recover();
-    if (system.law_count() > 0) {
+    if (has_laws()) {
       const double of_samples = sampling_error(probes);
       // A law that is odd as far as it could be seen, and is not.
       if (stride == 2 && !laws_act_oddly()) {
@@ -262,8 +276,9 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
       if (is_sampled_anew) samples_wanted = 4 * samples;
     }
     response.error = truncation_error(probes);
-    // The linear estimate knows nothing of what stiff contacts do as orders are added: two balances tell.
-    if (!std::isinf(firmness_used)) {
+    // The linear estimate knows nothing of what stiff contacts do as orders are added, nor of light parts that open and
+    // close: two balances tell.
+    if (!std::isinf(firmness_used) || !eq.groups().empty()) {
       difference = observed_before.size() > 0 ? change_since(observed_before) : infinity;
       response.error = std::max(response.error, caution * difference);
       if (!is_sampled_anew) observed_before = observed;
@@ -299,15 +314,20 @@ double HarmonicBalanceSolver::Implementation::change_since(const ComplexMatrix& 
 
 // Whether forces half a period apart are opposite, where only odd orders are balanced.
 bool HarmonicBalanceSolver::Implementation::laws_act_oddly() const {
-  constexpr double round_off = 1e-8;
+  const auto acts_oddly = [](const auto& law) {
+    constexpr double round_off = 1e-8;
+    return law.asymmetry() <= round_off * law.largest_force();
+  };
   const auto& laws = equations.front().laws();
-  return std::all_of(laws.begin(), laws.end(),
-                     [](const LawBySamples& law) { return law.asymmetry() <= round_off * law.largest_force(); });
+  const auto& groups = equations.front().groups();
+  return std::all_of(laws.begin(), laws.end(), acts_oddly) && std::all_of(groups.begin(), groups.end(), acts_oddly);
 }
 
 bool HarmonicBalanceSolver::Implementation::laws_close() const {
+  const auto has_closed = [](const auto& law) { return law.has_closed(); };
   const auto& laws = equations.front().laws();
-  return std::all_of(laws.begin(), laws.end(), [](const LawBySamples& law) { return law.has_closed(); });
+  const auto& groups = equations.front().groups();
+  return std::all_of(laws.begin(), laws.end(), has_closed) && std::all_of(groups.begin(), groups.end(), has_closed);
 }
 
 // Leaves the balance of fewer orders, solved before.

@@ -91,7 +91,8 @@ double HarmonicBalanceSolver::Implementation::sampling_error(int probes) {
 void HarmonicBalanceSolver::Implementation::fill_without_answer(const system::Excitation& excitation,
                                                                 SteadyResponse& response) {
   make_unbounded(request, sliders, response);
-  response.law_dissipated = Vector::Constant(system.law_count(), std::numeric_limits<double>::quiet_NaN());
+  response.law_dissipated =
+      Vector::Constant(system.law_count() + system.block_count(), std::numeric_limits<double>::quiet_NaN());
   if (is_driven_beyond_friction(excitation)) return;
   response.status = SteadyStatus::not_converged;
   for (Vector* values :
@@ -145,9 +146,7 @@ void HarmonicBalanceSolver::Implementation::fill(const system::Excitation& excit
   response.dissipated.setZero(sliders);
   response.slip_share.setZero(sliders);
   response.offset.setZero(sliders);
-  response.law_dissipated.resize(system.law_count());
-  for (Index j = 0; j < system.law_count(); ++j)
-    response.law_dissipated[j] = eq.laws()[static_cast<std::size_t>(j)].dissipated();
+  response.law_dissipated = eq.dissipated();
   response.transitions = 0;
   for (Index j = 0; j < sliders; ++j) {
     if (!(excitation.limits[j] > 0.0)) {

@@ -52,6 +52,9 @@ void HarmonicBalanceEquations::set(const Vector& limits, const Vector& offsets) 
   const bool is_held = std::any_of(harmonics_->begin(), harmonics_->end(), [](const auto& h) { return h.held > 0.0; });
   for (Index j = 0; j < limits.size(); ++j)
     if (limits[j] > 0.0 || is_held) active_.push_back(j);
+  position_.assign(static_cast<std::size_t>(limits.size()), -1);
+  for (std::size_t a = 0; a < active_.size(); ++a)
+    position_[static_cast<std::size_t>(active_[a])] = static_cast<Index>(a);
 }
 
 SliderSeries HarmonicBalanceEquations::balanced(const SliderSeries& displacement, const SliderSeries& force) const {
@@ -88,25 +91,20 @@ double HarmonicBalanceEquations::evaluate(const SliderSeries& series) {
   mean_force_.resize(stiffness_.size());
   displacement_ = linear_ = 0.0;
   double mean = 0.0;
-  if (!laws_.empty() && !is_extended_) coarse_angles_.prepare(samples_, series.orders);
+  if (has_laws() && !is_extended_) coarse_angles_.prepare(samples_, series.orders);
   for (const Index j : active_) {
     const Complex* const u = series.coefficients.data() + j * count;
-    if (j < sliders_) {
-      const double share = effective_[j] / stiffness_[j];  // of kT in what acts on W
-      loops_[static_cast<std::size_t>(j)].pass(effective_[j], limits_[j], series.mean[j], series.orders, u,
-                                               share * offsets_[j]);
-    } else {
-      laws_[static_cast<std::size_t>(j - sliders_)].pass(
-          is_fine_ ? fine_angles_ : coarse_angles_, harmonics[1].angular_frequency, series.mean[j], series.orders, u);
-      if (!std::isfinite(law(j).mean_force())) return HUGE_VAL;
-    }
+    pass(j, series);
+    if (j >= sliders_ && !std::isfinite(mean_force_of(j))) return HUGE_VAL;
     for (int i = 0; i < count; ++i) {
       const auto place = static_cast<std::size_t>(i) + 1;
-      force_(i, j) = part(place, j) * force_of(j, series.orders.at(i)) - held(place, j) * u[i];
+      const Complex force = shared(j, force_of(j, series.orders.at(i)), stiffness_[j] * u[i]);
+      force_(i, j) = part(place, j) * force - held(place, j) * u[i];
       displacement_ = std::max(displacement_, std::abs(u[i].real()) + std::abs(u[i].imag()));
     }
     if (series.has_mean) {
-      mean_force_[j] = part(0, j) * mean_force_of(j) - held(0, j) * series.mean[j];
+      const double force = shared(j, mean_force_of(j), stiffness_[j] * series.mean[j]);
+      mean_force_[j] = part(0, j) * force - held(0, j) * series.mean[j];
       mean = std::max(mean, std::abs(series.mean[j]));
     }
   }
@@ -142,45 +140,6 @@ void HarmonicBalanceEquations::keep_residual(const SliderSeries& series) {
   left_ = residual_;
 }
 
-void HarmonicBalanceEquations::differentiate(const SliderSeries& series) {
-  const int count = series.orders.count;
-  const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
-  columns_.resize(count, rows * static_cast<Index>(active_.size()));
-  by_mean_.resize(columns_.cols());
-  fill_diagonal(series, diagonal_);
-  for (std::size_t b = 0; b < active_.size(); ++b) {
-    const Index j = active_[b], from = static_cast<Index>(b) * rows;
-    if (j >= sliders_) laws_[static_cast<std::size_t>(j - sliders_)].differentiate();
-    for (int l = 0; l < count; ++l)
-      for (int i = 0; i < count; ++i) {
-        Complex by_real, by_imaginary;
-        derivative_of(j, series.orders.at(i), series.orders.at(l), by_real, by_imaginary);
-        const auto place = static_cast<std::size_t>(i) + 1;
-        by_real *= part(place, j);
-        by_imaginary *= part(place, j);
-        if (i == l) {
-          by_real -= held(place, j);
-          by_imaginary -= Complex(0.0, held(place, j));
-        }
-        columns_(i, from + shift + 2 * l) = by_real;
-        columns_(i, from + shift + 2 * l + 1) = by_imaginary;
-      }
-    if (!series.has_mean) continue;
-    columns_.col(from).setZero();
-    double by_mean = 0.0;
-    if (j < sliders_) {
-      by_mean = loops_[static_cast<std::size_t>(j)].mean_derivative();
-    } else {
-      by_mean = law(j).mean_derivative();
-      for (int i = 0; i < count; ++i) columns_(i, from) = law(j).derivative_by_mean(series.orders.at(i));
-    }
-    by_mean_[from] = part(0, j) * by_mean - held(0, j);
-    for (int l = 0; l < count; ++l)
-      mean_derivative_of(j, series.orders.at(l), by_mean_[from + 1 + 2 * l], by_mean_[from + 2 + 2 * l]);
-    by_mean_.segment(from + 1, 2 * count) *= part(0, j);
-  }
-}
-
 void HarmonicBalanceEquations::fill_diagonal(const SliderSeries& series, Vector& diagonal) const {
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   diagonal.resize(rows * static_cast<Index>(active_.size()));
@@ -199,16 +158,20 @@ void HarmonicBalanceEquations::fill_jacobian(const SliderSeries& series, Matrix&
   jacobian.setZero(size, size);
   jacobian.diagonal() = diagonal_;
   for (std::size_t b = 0; b < active_.size(); ++b) {
-    const Index j = active_[b], from = static_cast<Index>(b) * rows;
+    const Index from = static_cast<Index>(b) * rows;
+    const std::span<const Index> others = partners(active_[b]);
     for (std::size_t a = 0; a < active_.size(); ++a) {
       const Index row = active_[a], base = static_cast<Index>(a) * rows;
       for (Index c = from; c < from + rows; ++c) {
         double* const out = jacobian.data() + c * size + base;
-        if (series.has_mean) out[0] += joined_[0](row, j).real() * by_mean_[c];
-        for (int i = 0; i < count; ++i) {
-          const Complex change = product(joined_[static_cast<std::size_t>(i) + 1](row, j), columns_(i, c));
-          out[shift + 2 * i] += change.real();
-          out[shift + 2 * i + 1] += change.imag();
+        for (std::size_t p = 0; p < others.size(); ++p) {
+          const Index o = others[p], first = static_cast<Index>(p) * count;
+          if (series.has_mean) out[0] += joined_[0](row, o).real() * by_mean_(c, static_cast<Index>(p));
+          for (int i = 0; i < count; ++i) {
+            const Complex change = product(joined_[static_cast<std::size_t>(i) + 1](row, o), columns_(first + i, c));
+            out[shift + 2 * i] += change.real();
+            out[shift + 2 * i + 1] += change.imag();
+          }
         }
       }
     }
@@ -220,16 +183,20 @@ void HarmonicBalanceEquations::multiply_by_jacobian(const SliderSeries& series, 
   const int count = series.orders.count;
   const Index rows = rows_per_slider(series), shift = series.has_mean ? 1 : 0;
   const auto m = static_cast<Index>(active_.size());
-  changed_force_.resize(m, count);
+  changed_force_.setZero(m, count);
   y = diagonal_.cwiseProduct(x);
   for (Index b = 0; b < m; ++b) {
     const auto own = x.segment(b * rows, rows);
-    changed_force_.row(b).noalias() = (columns_.middleCols(b * rows, rows) * own).transpose();
-    if (!series.has_mean) continue;
-    const double mean_force = by_mean_.segment(b * rows, rows).dot(own);
-    for (Index a = 0; a < m; ++a)
-      y[a * rows] +=
-          joined_[0](active_[static_cast<std::size_t>(a)], active_[static_cast<std::size_t>(b)]).real() * mean_force;
+    const std::span<const Index> others = partners(active_[static_cast<std::size_t>(b)]);
+    for (std::size_t p = 0; p < others.size(); ++p) {
+      const auto place = static_cast<Index>(p);
+      changed_force_.row(position_[static_cast<std::size_t>(others[p])]).noalias() +=
+          (columns_.block(place * count, b * rows, count, rows) * own).transpose();
+      if (!series.has_mean) continue;
+      const double mean_force = by_mean_.col(place).segment(b * rows, rows).dot(own);
+      for (Index a = 0; a < m; ++a)
+        y[a * rows] += joined_[0](active_[static_cast<std::size_t>(a)], others[p]).real() * mean_force;
+    }
   }
   for (int i = 0; i < count; ++i) {
     const ComplexMatrix& receptance = joined_[static_cast<std::size_t>(i) + 1];
@@ -313,6 +280,12 @@ struct HarmonicBalanceEquations::Iterates : numerics::NewtonProblem {
     eq.step_ = eq.residual_;
     eq.solve_linear(series, newton_tolerance, eq.step_);
     return eq.step_.allFinite() ? eq.step_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  }
+
+  // Over the kinks of contacts the residual must be allowed to rise: a search for less of it loses solutions.
+  bool is_lower(double residual, double before, double part) {
+    constexpr double most_growth = 10.0;
+    return eq.groups_.empty() ? NewtonProblem::is_lower(residual, before, part) : residual < most_growth * before;
   }
 
   void move(double part) {

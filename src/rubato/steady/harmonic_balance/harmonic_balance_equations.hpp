@@ -2,10 +2,12 @@
 
 #include <rubato/numerics/gmres.hpp>
 #include <rubato/steady/harmonic_balance/condensed_structure.hpp>
+#include <rubato/steady/harmonic_balance/group_by_samples.hpp>
 #include <rubato/steady/harmonic_balance/hysteresis_loop.hpp>
 #include <rubato/steady/harmonic_balance/law_by_samples.hpp>
 #include <rubato/steady/harmonic_balance/small_lu.hpp>
 
+#include <span>
 #include <vector>
 
 namespace rubato::steady {
@@ -41,7 +43,8 @@ struct SliderSeries {
 ///   a W_k - U_k(linear) + (R_k - c a) N_k(W) = 0
 ///
 /// Other laws are balanced in U itself, by samples of their force (LawBySamples); in what follows they count as
-/// sliders. Linear parts may be raised from a small share of the loads to all of them (set_load_factor).
+/// sliders. The force of one follows from its own displacement, or from those of its group (GroupBySamples). Linear
+/// parts may be raised from a small share of the loads to all of them (set_load_factor).
 ///
 /// The Jacobian a + (R - c a) dN is that of all unknowns, but its two factors are not: R joins the sliders of one
 /// order, dN the orders of one slider. A large one is therefore factorised seldom; the systems between are solved by
@@ -50,12 +53,8 @@ struct SliderSeries {
 class HarmonicBalanceEquations {
  public:
   /// @param stiffness  kT of each slider   @param holding  h, of which a part may be held in Z [m] [N/m]
-  /// @param laws       those of the last of them
-  HarmonicBalanceEquations(const Vector& stiffness, const Vector& holding, const std::vector<model::LawBetween>& laws)
-      : stiffness_(stiffness), holding_(holding), sliders_(stiffness.size() - static_cast<Index>(laws.size())) {
-    loops_.resize(static_cast<std::size_t>(sliders_));
-    for (const model::LawBetween& law : laws) laws_.emplace_back(*law.law, law.normal.value);
-  }
+  /// @param system     of whose contacts they are, in its order
+  HarmonicBalanceEquations(const Vector& stiffness, const Vector& holding, const system::LocallyNonlinear& system);
 
   /// @param harmonics  place 0: the mean (unused without it); place 1 + i: order i, at least as many as unknown orders
   /// @param added      c of each slider [m] [m/N]
@@ -67,6 +66,9 @@ class HarmonicBalanceEquations {
   static constexpr int finer = 4;
   /// The share of the loads that acts [-].
   void set_load_factor(double factor) { load_factor_ = factor; }
+  /// The share of a spring of the contact's stiffness, and the rest of its law, in the forces of groups [-]: from 1,
+  /// where the balance is linear, contacts that open and close are released bit by bit.
+  void set_stuck_share(double share) { stuck_share_ = share; }
   const Vector& added_compliance() const { return added_; }
 
   /// W at which sliders are displaced by U under forces F, and the other way round from W and the loops at it.
@@ -90,6 +92,10 @@ class HarmonicBalanceEquations {
   /// The loops and forces at the solution found.
   const std::vector<HysteresisLoop>& loops() const { return loops_; }
   const std::vector<LawBySamples>& laws() const { return laws_; }
+  const std::vector<GroupBySamples>& groups() const { return groups_; }
+  bool has_laws() const { return !laws_.empty() || !groups_.empty(); }
+  /// What each law of the system dissipates over a period, the blocks behind the scalar ones [J].
+  Vector dissipated() const;
   const std::vector<Index>& active() const { return active_; }
   /// N of a slider at the series evaluated last; place as in the harmonics [N]
   Complex net_force(Index place, Index slider) const {
@@ -111,30 +117,39 @@ class HarmonicBalanceEquations {
   struct Iterates;
 
   double evaluate(const SliderSeries& series);
-  // Of a slider or a law.
-  Complex force_of(Index j, int k) const {
-    return j < sliders_ ? loops_[static_cast<std::size_t>(j)].force(k) : law(j).force(k);
+  /// Where the law of a contact behind the sliders is: alone, or a number of a group.
+  struct Seat {
+    std::size_t law = 0, group = 0;
+    Index number = -1;  ///< of the group; -1: alone
+  };
+  const Seat& seat(Index j) const { return seats_[static_cast<std::size_t>(j - sliders_)]; }
+  bool is_grouped(Index j) const { return j >= sliders_ && seat(j).number >= 0; }
+  const LawBySamples& law(Index j) const { return laws_[seat(j).law]; }
+  const GroupBySamples& group(Index j) const { return groups_[seat(j).group]; }
+  /// The contacts on whose displacements the force of a contact depends: itself alone, or its group.
+  std::span<const Index> partners(Index j) const {
+    return is_grouped(j) ? std::span<const Index>(members_[seat(j).group])
+                         : std::span<const Index>(&own_[static_cast<std::size_t>(j)], 1);
   }
-  double mean_force_of(Index j) const {
-    return j < sliders_ ? loops_[static_cast<std::size_t>(j)].mean_force() : law(j).mean_force();
+  void pass(Index j, const SliderSeries& series);
+  /// What a stuck share makes of a force, or of its derivative, that a spring would make.
+  template <class Value>
+  Value shared(Index j, Value of_law, Value of_spring) const {
+    if (stuck_share_ == 0.0 || !is_grouped(j)) return of_law;
+    return stuck_share_ == 1.0 ? of_spring : (1.0 - stuck_share_) * of_law + stuck_share_ * of_spring;
   }
-  void derivative_of(Index j, int k, int l, Complex& by_real, Complex& by_imaginary) const {
-    if (j < sliders_)
-      loops_[static_cast<std::size_t>(j)].derivative(k, l, by_real, by_imaginary);
-    else
-      law(j).derivative(k, l, by_real, by_imaginary);
-  }
-  void mean_derivative_of(Index j, int l, double& by_real, double& by_imaginary) const {
-    if (j < sliders_)
-      loops_[static_cast<std::size_t>(j)].mean_derivative(l, by_real, by_imaginary);
-    else
-      law(j).mean_derivative(l, by_real, by_imaginary);
-  }
-  const LawBySamples& law(Index j) const { return laws_[static_cast<std::size_t>(j - sliders_)]; }
+  // Of a contact, by the unknowns of another of its partners.
+  Complex force_of(Index j, int k) const;
+  double mean_force_of(Index j) const;
+  void derivative_of(Index i, Index j, int k, int l, Complex& by_real, Complex& by_imaginary) const;
+  void mean_derivative_of(Index i, Index j, int l, double& by_real, double& by_imaginary) const;
+  Complex derivative_by_mean_of(Index i, Index j, int k) const;
+  double mean_derivative_by_mean_of(Index i, Index j) const;
   /// The change of the forces kept where the unknowns change by `change`, added to force_change.
   void add_force_change(const SliderSeries& series, const Vector& change, ComplexMatrix& force_change) const;
   /// dF of every slider by its own unknowns, at the loops evaluated last.
   void differentiate(const SliderSeries& series);
+  void differentiate(const SliderSeries& series, Index o, Index p, Index j, Index from);
   void factorise(const SliderSeries& series);
   void fill_diagonal(const SliderSeries& series, Vector& diagonal) const;
   void fill_jacobian(const SliderSeries& series, Matrix& jacobian) const;
@@ -152,14 +167,22 @@ class HarmonicBalanceEquations {
   Vector stiffness_, holding_;
   Index sliders_;
   std::vector<LawBySamples> laws_;
+  std::vector<std::shared_ptr<const LawGroup>> group_laws_;
+  std::vector<GroupBySamples> groups_;
+  std::vector<std::vector<Index>> members_;  ///< contacts of each group, by its numbers
+  std::vector<Seat> seats_;                  ///< of the contacts behind the sliders
+  std::vector<Index> single_;                ///< laws of the system that laws_ are
+  std::vector<Index> own_;                   ///< 0, 1, ...
+  Index most_partners_ = 1, law_count_ = 0;
   SampleAngles coarse_angles_, fine_angles_;
   ComplexMatrix sampled_change_;  ///< of the forces by finer samples [count x m]
   int samples_ = 64;
   bool is_extended_ = false, is_fine_ = false;  ///< laws are evaluated for orders left out too, and at fine_angles_
-  double load_factor_ = 1.0;
+  double load_factor_ = 1.0, stuck_share_ = 0.0;
   const std::vector<CondensedHarmonic>* harmonics_ = nullptr;
   Vector limits_, offsets_;
   std::vector<Index> active_;
+  std::vector<Index> position_;  ///< of each contact among the active ones
   std::vector<HysteresisLoop> loops_;
   Vector added_, effective_;           ///< c, 1/(1/kT + c)
   std::vector<ComplexMatrix> joined_;  ///< R_k - c a of each place [m x m]
@@ -167,8 +190,8 @@ class HarmonicBalanceEquations {
   Vector mean_force_;                  ///< N_0
   Vector residual_, step_, left_;
   double left_part_ = 0.0;
-  ComplexMatrix columns_;  ///< dN_k of the sliders [count x active rows]
-  Vector by_mean_;         ///< dN_0 [active rows]
+  ComplexMatrix columns_;  ///< dN_k, of one partner after another [partners count x active rows]
+  Matrix by_mean_;         ///< dN_0 [active rows x partners]
   Vector diagonal_;        ///< a [active rows]
   SmallLu factor_, own_factor_;
   bool is_regular_ = true, has_factor_ = false;

@@ -96,7 +96,9 @@ void HarmonicBalanceSolver::Implementation::start_stuck() {
   for (Index j = 0; j < unlimited.size(); ++j)
     if (limits[j] > 0.0) unlimited[j] = infinity;
   equations.front().set(unlimited, offsets);
+  equations.front().set_stuck_share(1.0);
   equations.front().solve(series, options.residual_tolerance, 3);
+  equations.front().set_stuck_share(0.0);
 }
 
 // Newton's method from the start, with the compliances joined last.
@@ -136,9 +138,11 @@ bool HarmonicBalanceSolver::Implementation::newton(const system::Excitation& exc
     const bool is_last = firmness <= least_firmness || sliders == 0 || effort == Effort::brief ||
                          (effort == Effort::limited && response.iterations > most_before_shooting);
     if (!has_converged && effort != Effort::brief && (is_last || std::isinf(firmness))) {
-      start_stuck();
-      if (system.law_count() > 0 ? raise_the_loads(response.iterations)
-                                 : lower_the_limits(excitation, response.iterations)) {
+      if (!eq.groups().empty()) start_stuck();
+      const bool is_released = !eq.groups().empty() && release(response.iterations);
+      if (!is_released) start_stuck();
+      if (is_released ||
+          (has_laws() ? raise_the_loads(response.iterations) : lower_the_limits(excitation, response.iterations))) {
         eq.set(limits, offsets);
         const auto outcome = eq.solve(series, options.residual_tolerance, most_iterations);
         response.iterations += outcome.iterations;
@@ -198,6 +202,15 @@ bool HarmonicBalanceSolver::Implementation::lower_the_limits(const system::Excit
   const double logarithm = std::log(factor);
   return follow(logarithm, std::min(0.25 * logarithm, 1.0), iterations,
                 [&](double power) { eq.set(std::exp(power) * excitation.limits, offsets); });
+}
+
+// The contacts of groups, from springs to what they are.
+bool HarmonicBalanceSolver::Implementation::release(int& iterations) {
+  auto& eq = equations.front();
+  eq.set(limits, offsets);
+  const bool done = follow(1.0, 0.25, iterations, [&](double share) { eq.set_stuck_share(share); });
+  eq.set_stuck_share(0.0);
+  return done;
 }
 
 // All loads, multiplied by a factor that rises from where nothing slips and laws are linear to one.

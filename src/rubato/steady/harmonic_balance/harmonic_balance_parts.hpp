@@ -47,10 +47,13 @@ struct HarmonicBalanceSolver::Implementation {
   double return_to(const Motion& motion, const Vector& compliance);
   void forget_points();
   double change_since(const ComplexMatrix& before) const;
+  /// Whether there are other contacts than sliders.
+  bool has_laws() const { return equations.front().has_laws(); }
   bool has_solved_points() const { return !past.empty() || count_wanted > 1 || firmness > 0.0; }
   template <class Apply>
   bool follow(double parameter, double step, int& iterations, Apply&& apply);
   bool lower_the_limits(const system::Excitation& excitation, int& iterations);
+  bool release(int& iterations);
   bool raise_the_loads(int& iterations);
   bool add_orders(int& iterations);
   void start_stuck();

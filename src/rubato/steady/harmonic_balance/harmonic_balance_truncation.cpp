@@ -11,7 +11,7 @@ constexpr double estimate_tolerance = 1e-3;  // of the linear system: an estimat
 
 void HarmonicBalanceEquations::sampling(const SliderSeries& series, std::size_t end, ComplexMatrix& force_change) {
   force_change.setZero(series.orders.count, stiffness_.size());
-  if (laws_.empty()) return;
+  if (!has_laws()) return;
   // The derivatives, of the orders left out too, by the samples at hand; then the forces by finer ones.
   const Orders all{series.orders.stride, static_cast<int>(end) - 1};
   is_extended_ = true;
@@ -44,13 +44,13 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
   forces_left_out.setZero(static_cast<Index>(end - first), stiffness_.size());
   force_change.setZero(count, stiffness_.size());
   if (!any_slips()) return;
-  if (!laws_.empty()) force_change = sampled_change_;
+  if (has_laws()) force_change = sampled_change_;
   for (const Index j : active_)
     if (j < sliders_) loops_[static_cast<std::size_t>(j)].extend(series.orders.at(static_cast<int>(end) - 2));
 
   // Each order alone, with its own part in the force: U + R (F + dF U) = 0.
   Vector right(2 * m);
-  std::vector<Complex> by_real(static_cast<std::size_t>(m)), by_imaginary(static_cast<std::size_t>(m));
+  ComplexMatrix by_real(most_partners_, m), by_imaginary(most_partners_, m);  // of the forces of its partners
   for (std::size_t p = first; p < end; ++p) {
     stop_if_asked();
     const int k = series.orders.at(static_cast<int>(p) - 1);
@@ -60,20 +60,28 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     right.setZero();
     for (Index b = 0; b < m; ++b) {
       const Index j = active_[static_cast<std::size_t>(b)];
-      const auto at = static_cast<std::size_t>(b);
       const Complex force = part(p, j) * force_of(j, k);
-      derivative_of(j, k, k, by_real[at], by_imaginary[at]);
-      by_real[at] = part(p, j) * by_real[at] - held(p, j);
-      by_imaginary[at] = part(p, j) * by_imaginary[at] - Complex(0.0, held(p, j));
       forces_left_out(place, j) = force;
-      own(2 * b, 2 * b) = own(2 * b + 1, 2 * b + 1) = 1.0 / part(p, j);
+      own(2 * b, 2 * b) += 1.0 / part(p, j);
+      own(2 * b + 1, 2 * b + 1) += 1.0 / part(p, j);
+      const std::span<const Index> others = partners(j);
+      for (std::size_t q = 0; q < others.size(); ++q) {
+        const Index o = others[q];
+        Complex &real = by_real(static_cast<Index>(q), b), &imaginary = by_imaginary(static_cast<Index>(q), b);
+        derivative_of(o, j, k, k, real, imaginary);
+        real = part(p, o) * real - (o == j ? held(p, j) : 0.0);
+        imaginary = part(p, o) * imaginary - Complex(0.0, o == j ? held(p, j) : 0.0);
+        for (Index a = 0; a < m; ++a) {
+          const Complex r = joined_[p](active_[static_cast<std::size_t>(a)], o);
+          const Complex x = product(r, real), y = product(r, imaginary);
+          own(2 * a, 2 * b) += x.real();
+          own(2 * a + 1, 2 * b) += x.imag();
+          own(2 * a, 2 * b + 1) += y.real();
+          own(2 * a + 1, 2 * b + 1) += y.imag();
+        }
+      }
       for (Index a = 0; a < m; ++a) {
-        const Complex r = joined_[p](active_[static_cast<std::size_t>(a)], j);
-        const Complex x = product(r, by_real[at]), y = product(r, by_imaginary[at]), f = product(r, force);
-        own(2 * a, 2 * b) += x.real();
-        own(2 * a + 1, 2 * b) += x.imag();
-        own(2 * a, 2 * b + 1) += y.real();
-        own(2 * a + 1, 2 * b + 1) += y.imag();
+        const Complex f = product(joined_[p](active_[static_cast<std::size_t>(a)], j), force);
         right[2 * a] -= f.real();
         right[2 * a + 1] -= f.imag();
       }
@@ -82,30 +90,34 @@ void HarmonicBalanceEquations::truncation(const SliderSeries& series, std::size_
     own_factor_.solve(right);
     for (Index b = 0; b < m; ++b) {
       const Index j = active_[static_cast<std::size_t>(b)];
-      const auto at = static_cast<std::size_t>(b);
       left_out(place, j) = Complex(right[2 * b], right[2 * b + 1]);
-      forces_left_out(place, j) += right[2 * b] * by_real[at] + right[2 * b + 1] * by_imaginary[at];
+      const std::span<const Index> others = partners(j);
+      for (std::size_t q = 0; q < others.size(); ++q) {
+        const auto of = static_cast<Index>(q);
+        forces_left_out(place, others[q]) += right[2 * b] * by_real(of, b) + right[2 * b + 1] * by_imaginary(of, b);
+      }
     }
   }
 
   // What that does to the orders kept.
   const bool is_new = factor_.size() != rows * m;
-  if ((is_new || is_large(series)) && laws_.empty()) differentiate(series);
+  if ((is_new || is_large(series)) && !has_laws()) differentiate(series);
   if (is_new && !is_large(series)) factorise(series);
   Vector mean_change = Vector::Zero(stiffness_.size());
   for (const Index j : active_) {
     for (std::size_t p = first; p < end; ++p) {
       const int l = series.orders.at(static_cast<int>(p) - 1);
       const Complex u = left_out(static_cast<Index>(p - first), j);
-      for (int i = 0; i < count; ++i) {
-        Complex real, imaginary;
-        derivative_of(j, series.orders.at(i), l, real, imaginary);
-        force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (u.real() * real + u.imag() * imaginary);
-      }
-      if (series.has_mean) {
+      for (const Index o : partners(j)) {
+        for (int i = 0; i < count; ++i) {
+          Complex real, imaginary;
+          derivative_of(o, j, series.orders.at(i), l, real, imaginary);
+          force_change(i, o) += part(static_cast<std::size_t>(i) + 1, o) * (u.real() * real + u.imag() * imaginary);
+        }
+        if (!series.has_mean) continue;
         double real, imaginary;
-        mean_derivative_of(j, l, real, imaginary);
-        mean_change[j] += part(0, j) * (u.real() * real + u.imag() * imaginary);
+        mean_derivative_of(o, j, l, real, imaginary);
+        mean_change[o] += part(0, o) * (u.real() * real + u.imag() * imaginary);
       }
     }
   }
@@ -134,16 +146,18 @@ void HarmonicBalanceEquations::add_force_change(const SliderSeries& series, cons
   for (Index b = 0; b < static_cast<Index>(active_.size()); ++b) {
     const Index j = active_[static_cast<std::size_t>(b)];
     if (j >= sliders_ && series.has_mean)
-      for (int i = 0; i < count; ++i)
-        force_change(i, j) += change[b * rows] * law(j).derivative_by_mean(series.orders.at(i));
+      for (const Index o : partners(j))
+        for (int i = 0; i < count; ++i)
+          force_change(i, o) += change[b * rows] * derivative_by_mean_of(o, j, series.orders.at(i));
     for (int l = 0; l < count; ++l) {
       const double re = change[b * rows + shift + 2 * l], im = change[b * rows + shift + 2 * l + 1];
       force_change(l, j) -= held(static_cast<std::size_t>(l) + 1, j) * Complex(re, im);
-      for (int i = 0; i < count; ++i) {
-        Complex real, imaginary;
-        derivative_of(j, series.orders.at(i), series.orders.at(l), real, imaginary);
-        force_change(i, j) += part(static_cast<std::size_t>(i) + 1, j) * (re * real + im * imaginary);
-      }
+      for (const Index o : partners(j))
+        for (int i = 0; i < count; ++i) {
+          Complex real, imaginary;
+          derivative_of(o, j, series.orders.at(i), series.orders.at(l), real, imaginary);
+          force_change(i, o) += part(static_cast<std::size_t>(i) + 1, o) * (re * real + im * imaginary);
+        }
     }
   }
 }

@@ -1,6 +1,5 @@
 #include <rubato/steady/harmonic_balance/law_by_samples.hpp>
 
-#include <Eigen/QR>
 #include <Eigen/SVD>
 
 #include <algorithm>
@@ -13,62 +12,16 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double difference = 1.5e-8;    // of a scale: the square root of round-off
-constexpr double closed = 1e-14;         // of the memory's largest numbers
-constexpr double nearly_closed = 1e-10;  // what round-off may leave where a law forgets slowly
-constexpr int plain_periods = 2;         // before Newton's method on the memory: laws that forget are closed then
-constexpr int most_periods = 60;
-// 1 - the slope of a memory by itself a period ago, below which it keeps what it was: slopes of many steps by
-// differences are no better known.
-constexpr double forgets = 1e-9, forgets_by_differences = 1e-5;
-
-/// (1 - A)^+ x: what a memory keeps for ever is left as it is.
-Matrix closing(const Matrix& by_start, const Matrix& x, double least) {
-  const Matrix lost = Matrix::Identity(by_start.rows(), by_start.cols()) - by_start;
-  Eigen::CompleteOrthogonalDecomposition<Matrix> factor(lost.rows(), lost.cols());
-  factor.setThreshold(least / std::max(1.0, lost.cwiseAbs().maxCoeff()));
-  factor.compute(lost);
-  if (lost.cwiseAbs().maxCoeff() < least) return Matrix::Zero(x.rows(), x.cols());
-  return factor.solve(x);
-}
+constexpr double difference = Closing::difference;
 
 }  // namespace
-
-void SampleAngles::prepare(int count, const Orders& orders) {
-  orders_ = orders;
-  if (this->count() == count) return;
-  circle_.resize(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) circle_[static_cast<std::size_t>(i)] = unit(2.0 * pi * i / count);
-}
-
-void SampleAngles::synthesise(const Orders& orders, const ComplexVector& coefficients, Vector& values) {
-  const auto n = static_cast<std::size_t>(count());
-  spectrum_.assign(n, 0.0);
-  const double half = 0.5 * count();
-  for (int i = 0; i < orders.count; ++i) {
-    const auto k = static_cast<std::size_t>(orders.at(i));
-    spectrum_[k] = half * coefficients[i];
-    spectrum_[n - k] = std::conj(spectrum_[k]);
-  }
-  transform_.inv(values_, spectrum_);
-  values.resize(count());
-  for (std::size_t i = 0; i < n; ++i) values[static_cast<Index>(i)] = values_[i].real();
-}
-
-const std::vector<Complex>& SampleAngles::analyse(const double* values) {
-  samples_.assign(values, values + count());
-  transform_.fwd(spectrum_, samples_);
-  spectrum_.resize(circle_.size() / 2 + 1);
-  for (Complex& c : spectrum_) c *= 2.0 / count();
-  return spectrum_;
-}
 
 LawBySamples::LawBySamples(const model::Law& law, double normal)
     : law_(law),
       normal_(normal),
       own_slopes_(dynamic_cast<const model::LawSlopes*>(&law)),
       memory_(law.memory_size()),
-      least_forgotten_(own_slopes_ ? forgets : forgets_by_differences) {
+      least_forgotten_(own_slopes_ ? Closing::forgets : Closing::forgets_by_differences) {
   now_.resize(memory_);
   next_.resize(memory_);
   length_.resize(memory_);
@@ -162,35 +115,15 @@ void LawBySamples::march(const Vector& start, Vector& end) {
 }
 
 void LawBySamples::close() {
-  started_.clear();
-  Vector start = Vector::Zero(memory_), end(memory_), proposal;
+  Vector start = Vector::Zero(memory_);
   const Vector rest = start;
   model::LawPoint origin;
   origin.t = places_.front().point.t;
   origin.normal = normal_;
   law_.advance(origin, rest.data(), places_.front().point, start.data());
-  double last = HUGE_VAL;
-  for (int period = 0;; ++period) {
-    started_.push_back(start);
-    march(start, end);
-    double error = 0.0;
-    for (Index i = 0; i < memory_; ++i)
-      if (end[i] != start[i]) error = std::max(error, std::abs(end[i] - start[i]) / length_[i]);
-    has_closed_ = error <= nearly_closed;
-    if (error <= closed || !(error < HUGE_VAL) || period >= most_periods) return;
-    if (has_closed_ && !(error < 0.5 * last)) return;  // round-off
-    const bool leaps = period >= plain_periods && error < last;
-    last = error;
-    if (leaps) {
-      const Matrix by_start = carry(start);
-      proposal = start + closing(by_start, end - start, least_forgotten_);
-      if (proposal.allFinite()) {
-        start = proposal;
-        continue;
-      }
-    }
-    start = end;
-  }
+  has_closed_ = Closing::close(
+      std::move(start), length_, least_forgotten_, [&](const Vector& from, Vector& end) { march(from, end); },
+      [&](const Vector& from) { return carry(from); }, started_);
 }
 
 void LawBySamples::find_forces() {
@@ -362,7 +295,7 @@ void LawBySamples::differentiate() {
   }
   Matrix after = of_memory;
   carry(started_.back(), after, false);
-  of_memory += closing(by_start, (after - of_memory).transpose(), least_forgotten_).transpose();
+  of_memory += Closing::solve(by_start, (after - of_memory).transpose(), least_forgotten_).transpose();
   carry(started_.back(), of_memory, true);
   find_derivatives_of_forces();
 }

@@ -1,34 +1,11 @@
 #pragma once
 
 #include <rubato/model/laws/law_slopes.hpp>
-#include <rubato/steady/trigonometric_series.hpp>
-
-#include <unsupported/Eigen/FFT>
+#include <rubato/steady/harmonic_balance/sample_angles.hpp>
 
 #include <vector>
 
 namespace rubato::steady {
-
-/// Equal angles over a period, the ways between values at them and Fourier series, and the orders that are wanted.
-class SampleAngles {
- public:
-  /// @param count  a power of two, more than twice the highest order
-  void prepare(int count, const Orders& orders);
-  int count() const { return static_cast<int>(circle_.size()); }
-  const Orders& orders() const { return orders_; }
-  Complex unit_vector(long i) const { return circle_[static_cast<std::size_t>(i % count())]; }
-  /// Values of sum over the orders of Re(c_k exp(i k theta)).
-  void synthesise(const Orders& orders, const ComplexVector& coefficients, Vector& values);
-  /// 2/N sum over the values of x exp(-i k theta), for k from 0 to N/2.
-  const std::vector<Complex>& analyse(const double* values);
-
- private:
-  Orders orders_;
-  std::vector<Complex> circle_;  ///< exp(i theta)
-  Eigen::FFT<double> transform_;
-  std::vector<Complex> spectrum_, values_;
-  std::vector<double> samples_;
-};
 
 /// The force of any law over a period in which its displacement is a truncated Fourier series: alternating frequency
 /// and time (Cameron and Griffin 1989, J. Appl. Mech. 56, 149).

@@ -58,15 +58,24 @@ LinearResponse linear_response(const SparseMatrix& stiffness, const system::Loca
 
 }  // namespace
 
-system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system) {
+system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system, bool stuck) {
+  system::LocallyNonlinear::Parts alone;
+  alone.mass = system.mass();
+  alone.damping = system.damping();
+  alone.stiffness = system.stiffness();
+  alone.stops = system.stops();
+  alone.laws = system.laws();
+  alone.blocks = system.blocks();
+  alone.start.q = system.start().q;
+  alone.start.v = system.start().v;
+  alone.coordinates = system.coordinates();
+  const system::LocallyNonlinear laws(std::move(alone));
+
   system::LocallyNonlinear::Parts parts;
   parts.mass = system.mass();
-  parts.damping = system.free_damping();
-  parts.stiffness = system.free_stiffness();
+  parts.damping = laws.free_damping();
+  parts.stiffness = stuck ? laws.stuck_stiffness() : laws.free_stiffness();
   parts.sliders = system.sliders();
-  for (const model::LawBetween& law : system.laws())
-    if (const double stiffness = law.law->sticking_stiffness(); stiffness > 0.0)
-      parts.sliders.push_back({law.name, law.first, law.second, stiffness, 0.0});
   parts.stops = system.stops();
   parts.loads = system.loads();
   parts.start.q = system.start().q;
@@ -74,12 +83,6 @@ system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system
   parts.coordinates = system.coordinates();
   parts.reference = system.reference();
   return system::LocallyNonlinear(std::move(parts));
-}
-
-StuckSliders linear_limit(const system::LocallyNonlinear& system, bool stuck) {
-  const auto laws = std::count_if(system.laws().begin(), system.laws().end(),
-                                  [](const model::LawBetween& law) { return law.law->sticking_stiffness() > 0.0; });
-  return StuckSliders(static_cast<std::size_t>(system.slider_count() + laws), stuck);
 }
 
 system::State nearer_linear_limit(const system::LocallyNonlinear& system, const system::Excitation& excitation) {

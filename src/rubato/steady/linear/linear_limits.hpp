@@ -6,11 +6,10 @@
 
 namespace rubato::steady {
 
-/// The system with the slopes of its laws at rest in K and C, and without the laws and their forces at rest. Laws that
-/// stick are sliders behind the others.
-system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system);
-/// One of its two linear limits, for all sliders of that.
-StuckSliders linear_limit(const system::LocallyNonlinear& system, bool stuck);
+/// The system with its laws in K and C, and without their forces at rest: smooth ones with their slopes at rest, those
+/// of friction and contacts as they are in a limit of small motions, where everything that rubs sticks and all that may
+/// touch is closed, or nothing rubs and contacts are closed where they are at rest. Its sliders stay.
+system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system, bool stuck);
 
 /// The state at phase zero of the linear response that is nearer to the response with friction: with all sliders stuck
 /// and without force at rest, where that asks of no slider more than twice its limit, else without sliders. Its slider

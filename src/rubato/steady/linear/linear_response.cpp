@@ -32,7 +32,7 @@ double largest_of(const ComplexVector& x) { return x.size() > 0 ? x.cwiseAbs().m
 
 LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSliders stuck, SteadyRequest request,
                                const LinearSweep& sweep)
-    : system_(system.law_count() > 0 ? with_linear_laws(system) : system),
+    : system_(system.has_laws() ? with_linear_laws(system, false) : system),
       stuck_(std::move(stuck)),
       request_(std::move(request)),
       stiffness_(system_, stuck_) {
@@ -43,12 +43,19 @@ LinearResponse::LinearResponse(const system::LocallyNonlinear& system, StuckSlid
   if (!modal_->is_usable()) modal_.reset();
 }
 
+LinearResponse limit(const system::LocallyNonlinear& system, bool stuck, SteadyRequest request,
+                     const LinearSweep& sweep) {
+  const StuckSliders sliders(static_cast<std::size_t>(system.slider_count()), stuck);
+  if (!system.has_laws()) return {system, sliders, std::move(request), sweep};
+  return {with_linear_laws(system, stuck), sliders, std::move(request), sweep};
+}
+
 LinearResponse free_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
-  return {system, linear_limit(system, false), std::move(request), sweep};
+  return limit(system, false, std::move(request), sweep);
 }
 
 LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep) {
-  return {system, linear_limit(system, true), std::move(request), sweep};
+  return limit(system, true, std::move(request), sweep);
 }
 
 void LinearResponse::forget() {

@@ -70,7 +70,9 @@ class LinearResponse final : public SteadySolver {
   std::vector<Doubt> doubts_;  // of each harmonic
 };
 
-/// A limit: all sliders stuck, or all removed.
+/// A limit: all sliders stuck, or all removed; other laws as with_linear_laws() has them.
+LinearResponse limit(const system::LocallyNonlinear& system, bool stuck, SteadyRequest request,
+                     const LinearSweep& sweep = {});
 LinearResponse free_limit(const system::LocallyNonlinear& system, SteadyRequest request, const LinearSweep& sweep = {});
 LinearResponse stuck_limit(const system::LocallyNonlinear& system, SteadyRequest request,
                            const LinearSweep& sweep = {});

@@ -174,7 +174,7 @@ namespace {
 
 /// Those of the motions that leave every law where it is.
 Matrix not_seen_by_laws(const system::LocallyNonlinear& system, const Matrix& motions) {
-  Matrix seen(system.law_count(), motions.cols());
+  Matrix seen(system.contact_count() - system.first_law(), motions.cols());
   for (Index k = 0; k < motions.cols(); ++k)
     for (Index j = 0; j < seen.rows(); ++j)
       seen(j, k) = system.relative_displacement(system.first_law() + j, motions.col(k));
@@ -188,7 +188,7 @@ Matrix rigid_motions(PeriodMap& map, const system::LocallyNonlinear& system) {
   if (system.size() > largest_rigid || system.slider_count() == 0) return motions;
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
   Matrix shapes = modes.shapes.leftCols((modes.eigenvalues.array() == 0.0).count());
-  if (system.law_count() > 0 && shapes.cols() > 0) shapes = not_seen_by_laws(system, shapes);
+  if (system.has_laws() && shapes.cols() > 0) shapes = not_seen_by_laws(system, shapes);
   const Index count = shapes.cols();
   if (count == 0) return motions;
   motions.resize(map.size(), count);

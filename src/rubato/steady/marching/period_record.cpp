@@ -76,7 +76,7 @@ void PeriodRecord::reset(Index observed, const system::LocallyNonlinear& system,
   acceleration.resize(accelerations ? observed : 0, wanted + 1);
   slider_force.resize(sliders, wanted + 1);
   displacement.resize(sliders, wanted + 1);
-  law_work.setZero(system.law_count());
+  law_work.setZero(system.law_count() + system.block_count());
   viscous_work = input_work = 0.0;
 }
 

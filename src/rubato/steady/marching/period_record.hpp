@@ -13,7 +13,7 @@ struct PeriodRecord {
   Index steps = 0;                              ///< S
   Matrix position, velocity, acceleration;      ///< of each observed [o x S+1] [m], [m/s], [m/s2]
   Matrix slider_force, displacement;            ///< fc and u of each slider [m x S+1] [N], [m]
-  Vector law_work;                              ///< dissipated by each law [laws] [J]
+  Vector law_work;                              ///< dissipated by each law, then each block [laws + blocks] [J]
   double viscous_work = 0.0, input_work = 0.0;  ///< sums of C v . dq and f . dq, means of both ends of each step [J]
 };
 

@@ -1,6 +1,7 @@
 #include <rubato/steady/marching/stepper_map.hpp>
 
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/law_energy.hpp>
 #include <rubato/integrate/stepper.hpp>
 
 #include <algorithm>
@@ -41,6 +42,11 @@ Vector memory_lengths(const system::LocallyNonlinear& system) {
       memory[i] = 0.0;
       if (length > 0.0 && std::isfinite(length)) lengths[system.memory_of(j) + i] = length;
     }
+  }
+  for (Index b = 0; b < system.block_count(); ++b) {
+    const model::BlockLaw& law = *system.blocks()[static_cast<std::size_t>(b)].law;
+    for (Index i = 0; i < law.memory_size(); ++i)
+      lengths[system.memory_of_block(b) + i] = 1.0 / law.limit_stiffness(i, true);  // its memory is a force
   }
   return lengths;
 }
@@ -224,13 +230,10 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
   for (Index i = 0; i < system_.slider_count(); ++i)
     record.displacement(i, column) = system_.relative_displacement(i, state.q);
   if (!record.has_works) return;
-  for (Index j = 0; j < system_.law_count(); ++j) {
-    const model::Law& law = *system_.laws()[static_cast<std::size_t>(j)].law;
-    const Index place = system_.memory_of(j);
-    if (adds_work)
-      record.law_work[j] += law.dissipated(system_.law_point(j, last_, model::Side::right), last_.memory.data() + place,
-                                           system_.law_point(j, state, model::Side::left), state.memory.data() + place);
-  }
+  for (Index j = 0; adds_work && j < system_.law_count(); ++j)
+    record.law_work[j] += integrate::dissipated_by_law(system_, j, last_, state);
+  for (Index b = 0; adds_work && b < system_.block_count(); ++b)
+    record.law_work[system_.law_count() + b] += integrate::dissipated_by_block(system_, b, last_, state);
   if (system_.has_laws()) last_ = state;
   product_.noalias() = system_.damping() * state.v;
   loads_.evaluate(state.t, force_);
