@@ -1,4 +1,5 @@
 #include <rubato/integrate/equilibrium/contact_tangent.hpp>
+#include <rubato/integrate/equilibrium/contacts_from_rest.hpp>
 #include <rubato/integrate/equilibrium/easiest_motion.hpp>
 #include <rubato/integrate/equilibrium/rounding.hpp>
 #include <rubato/integrate/equilibrium/static_by_growth.hpp>
@@ -17,11 +18,16 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int operations_of_a_law = 32;  // roundings that its force may have
+constexpr double least_step = 1e-6;      // of the loads
 
 class Growth final : public numerics::NewtonProblem {
  public:
   Growth(const system::LocallyNonlinear& system, std::span<const model::Held> held)
-      : system_(system), held_(held), load_(system.size()), place_(static_cast<std::size_t>(system.size()), 0) {
+      : system_(system),
+        contacts_(system),
+        held_(held),
+        load_(system.size()),
+        place_(static_cast<std::size_t>(system.size()), 0) {
     system::Loads loads = system.loads();
     loads.evaluate_static(0.0, load_, model::Side::left);
     for (const auto& force : system.held_forces()) load_[force.coordinate] += force.value;
@@ -35,7 +41,6 @@ class Growth final : public numerics::NewtonProblem {
     state_.t = 0.0;
     state_.q.setZero();
     state_.memory.setZero();
-    slope_.setZero(system.contact_count());
     change_.setZero(system.size());
     accepted_ = state_.q;
     for (Index i = 0; i < system.contact_count(); ++i) columns_.push_back(system.column(i));
@@ -43,34 +48,15 @@ class Growth final : public numerics::NewtonProblem {
     magnitude_ = system.stiffness().cwiseAbs();
     most_summands_ = most_summands();
     tangent_.emplace(system, place_, static_cast<Index>(free_.size()));
-    if (!free_.empty()) factor_.analyse(tangent_->with(slope_));
+    if (!free_.empty()) factor_.analyse(tangent_->with(contacts_.slope()));
     reach_.setZero(system.contact_count());
-    block_slopes_.resize(static_cast<std::size_t>(system.block_count()));
-    take_normals();
-    is_symmetric_ = is_symmetric_ && system.block_count() == 0;
     for (const model::LawBetween& law : system.laws())
       slopes_are_bounded_ = slopes_are_bounded_ && std::isfinite(law.law->largest_stiffness());
   }
 
   StaticEquilibrium solve() {
     StaticEquilibrium result;
-    constexpr double least_step = 1e-6;
-    double reached = 0.0, step = 1.0;
-    Vector known = state_.q;
-    while (reached < 1.0) {
-      share_ = std::min(1.0, reached + step);
-      for (const auto& one : held_) state_.q[one.coordinate] = share_ * one.value;
-      accepted_ = state_.q;
-      if (is_balanced() && is_stable()) {
-        reached = share_;
-        known = state_.q;
-        step *= 2.0;
-        continue;
-      }
-      state_.q = known;
-      step = 0.5 * (share_ - reached);
-      if (!(step >= least_step)) break;
-    }
+    const double reached = system_.block_count() > 0 ? grow_from_touch() : grow(0.0);
     share_ = reached;
     evaluate(true);
     result.factorisations = factorisations_;
@@ -96,7 +82,7 @@ class Growth final : public numerics::NewtonProblem {
 
   // What numerics::newton asks for.
   double evaluate(bool) {
-    load_contacts();
+    contacts_.load(state_);
     residual_ = share_ * load_ - system_.stiffness() * state_.q;
     system_.add_slider_forces(state_.slider_force, -1.0, residual_);
     diagonal_ = own_diagonal_;
@@ -110,11 +96,11 @@ class Growth final : public numerics::NewtonProblem {
       reach_[i] = reach;
       for (const auto& [place, weight] : column) {
         const double share = std::abs(weight);
-        diagonal_[place] += share * share * std::abs(slope_[i]);
-        terms_[place] += share * (std::abs(state_.slider_force[i]) + std::abs(slope_[i]) * reach);
+        diagonal_[place] += share * share * std::abs(contacts_.slope()[i]);
+        terms_[place] += share * (std::abs(state_.slider_force[i]) + std::abs(contacts_.slope()[i]) * reach);
       }
     }
-    for_each_cross_slope([&](Index i, Index k, double slope) {
+    contacts_.for_each_cross_slope([&](Index i, Index k, double slope) {
       for (const auto& [place, weight] : columns_[static_cast<std::size_t>(i)])
         terms_[place] += std::abs(weight * slope) * reach_[k];
     });
@@ -137,13 +123,13 @@ class Growth final : public numerics::NewtonProblem {
   bool factorise() {
     if (free_.empty()) return true;
     ++factorisations_;
-    if (!is_symmetric_) return factorise_with_normals();
-    return factor_.factorise(tangent_->with(slope_));
+    if (!contacts_.is_symmetric()) return factorise_with_normals();
+    return factor_.factorise(tangent_->with(contacts_.slope()));
   }
   double correct() {
     Vector right(static_cast<Index>(free_.size())), solution;
     for (std::size_t i = 0; i < free_.size(); ++i) right[static_cast<Index>(i)] = residual_[free_[i]];
-    if (!free_.empty() && is_symmetric_)
+    if (!free_.empty() && contacts_.is_symmetric())
       factor_.solve(right, solution);
     else if (!free_.empty())
       solution = unsymmetric_.solve(right);
@@ -166,6 +152,85 @@ class Growth final : public numerics::NewtonProblem {
   }
 
  private:
+  /// Raises something from a share that is known to be balanced to all of it, by steps that are as small as it takes.
+  /// @return the share that was reached
+  template <class Attempt>
+  double raise(double reached, const Attempt& attempt) {
+    double step = 1.0;
+    Vector known = state_.q;
+    while (reached < 1.0) {
+      const double to = std::min(1.0, reached + step);
+      if (attempt(to)) {
+        reached = to;
+        known = state_.q;
+        step *= 2.0;
+        continue;
+      }
+      state_.q = known;
+      step = 0.5 * (to - reached);
+      if (!(step >= least_step)) break;
+    }
+    return reached;
+  }
+  double grow(double from) {
+    return raise(from, [this](double share) { return rests_under(share); });
+  }
+  /// From where q is.
+  bool rests_under(double share) {
+    share_ = share;
+    for (const auto& one : held_) state_.q[one.coordinate] = share * one.value;
+    accepted_ = state_.q;
+    return is_balanced() && is_stable();
+  }
+
+  /// Where contacts just touch forces follow the loads in proportion from the start, and no share of the loads is
+  /// easier than another. The way on which they open, stick and slip at first is that of contacts that are pressed a
+  /// little, or a little apart, as this goes to zero.
+  double grow_from_touch() {
+    state_.q.setZero();
+    if (rests_under(1.0)) return 1.0;
+    state_.q.setZero();
+    if (rests_under(least_step)) return grow(least_step);
+    const double force = force_on_contacts();
+    for (const double sense : {-1.0, 1.0}) {
+      const auto widen = [&](double part) {
+        for (Index b = 0; b < system_.block_count(); ++b)
+          contacts_.widened()[b] = part * sense * force / normal_stiffness(b);
+      };
+      widen(1.0);
+      state_.q.setZero();
+      const bool begins = raise(0.0, [&](double part) { return rests_under(part * least_step); }) == 1.0;
+      const bool leads = begins && raise(0.0, [&](double part) {
+                                     widen(1.0 - part);
+                                     return rests_under(least_step);
+                                   }) == 1.0;
+      contacts_.widened().setZero();
+      if (leads) return grow(least_step);
+    }
+    state_.q.setZero();
+    return 0.0;
+  }
+  double normal_stiffness(Index block) const {
+    const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(block)].law;
+    return law.limit_stiffness(law.size() - 1, true);
+  }
+  /// The largest that would press or pull a contact where all of them held, under the smallest share of the loads.
+  double force_on_contacts() {
+    share_ = least_step;
+    state_.q.setZero();
+    for (const auto& one : held_) state_.q[one.coordinate] = share_ * one.value;
+    accepted_ = state_.q;
+    evaluate(true);
+    if (!factorise()) return 0.0;
+    correct();
+    double force = 0.0;
+    for (Index b = 0; b < system_.block_count(); ++b) {
+      const Index normal = system_.row_of_block(b) + system_.blocks()[static_cast<std::size_t>(b)].law->size() - 1;
+      force = std::max(force, normal_stiffness(b) * std::abs(system_.relative_displacement(normal, change_)));
+    }
+    return force;
+  }
+
   /// Newton's method to round-off of the residual.
   bool is_balanced() {
     const Vector begin = accepted_;
@@ -213,86 +278,6 @@ class Growth final : public numerics::NewtonProblem {
     return rules;
   }
 
-  /// Forces and slopes of all contacts where q is.
-  void load_contacts() {
-    for (Index i = 0; i < system_.contact_count(); ++i) {
-      const double u = system_.relative_displacement(i, state_.q);
-      double& force = state_.slider_force[i];
-      if (i < system_.slider_count()) {
-        const auto& slider = system_.sliders()[static_cast<std::size_t>(i)];
-        force = std::clamp(slider.stiffness * u, -slider.limit, slider.limit);
-        slope_[i] = std::abs(slider.stiffness * u) <= slider.limit ? slider.stiffness : 0.0;
-      } else if (i < system_.first_law()) {
-        const auto& stop = system_.stops()[static_cast<std::size_t>(i - system_.slider_count())];
-        force = stop.stiffness * std::max(0.0, u - stop.gap);
-        slope_[i] = u > stop.gap ? stop.stiffness : 0.0;
-      } else {
-        break;
-      }
-    }
-    for (const Index law : system_.law_order()) load_law(law);
-    for (Index b = 0; b < system_.block_count(); ++b) load_block(b);
-  }
-
-  /// From rest, in a straight line.
-  void load_block(Index b) {
-    const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(b)].law;
-    const Index first = system_.row_of_block(b), memory = system_.memory_of_block(b);
-    virgin_.setZero(system_.memory_size());
-    model::BlockPoint to;
-    for (Index i = 0; i < law.size(); ++i) to.u[i] = system_.relative_displacement(first + i, state_.q);
-    model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
-    answer = law.advance({}, virgin_.data() + memory, to, state_.memory.data() + memory);
-    for (Index i = 0; i < law.size(); ++i) {
-      state_.slider_force[first + i] = answer.force[i];
-      slope_[first + i] = answer.by_u[i][i];
-    }
-  }
-
-  /// Of forces of blocks by other numbers than their own: take(contact, other contact, slope).
-  template <class Take>
-  void for_each_cross_slope(const Take& take) const {
-    for (Index b = 0; b < system_.block_count(); ++b) {
-      const Index first = system_.row_of_block(b), size = system_.blocks()[static_cast<std::size_t>(b)].law->size();
-      const model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
-      for (Index i = 0; i < size; ++i)
-        for (Index k = 0; k < size; ++k)
-          if (i != k && answer.by_u[i][k] != 0.0) take(first + i, first + k, answer.by_u[i][k]);
-    }
-  }
-
-  void load_law(Index law) {
-    const Index i = system_.first_law() + law, memory = system_.memory_of(law);
-    const double u = system_.relative_displacement(i, state_.q);
-    virgin_.setZero(system_.memory_size());
-    model::LawPoint from{0.0, 0.0, 0.0, model::Side::left}, to{u, 0.0, 0.0, model::Side::left};
-    if (system_.has_normals()) {
-      from.normal = normal_at_rest_[law];
-      to.normal = system_.normal_force(law, state_, state_.slider_force, model::Side::left);
-    }
-    const model::LawAnswer answer = system_.laws()[static_cast<std::size_t>(law)].law->advance(
-        from, virgin_.data() + memory, to, state_.memory.data() + memory);
-    state_.slider_force[i] = answer.force;
-    slope_[i] = answer.by_u;
-    by_normal_[law] = answer.by_normal;
-  }
-
-  /// What presses where nothing has moved, from where normal forces grow with the motion.
-  void take_normals() {
-    by_normal_.setZero(system_.law_count());
-    normal_at_rest_.setZero(system_.law_count());
-    if (!system_.has_normals()) return;
-    system::State rest = state_;
-    rest.v.setZero();
-    rest.slider_force.setZero();
-    system_.set_stop_forces(rest);
-    system_.set_law_forces(rest, model::Side::left);
-    for (Index j = 0; j < system_.law_count(); ++j) {
-      normal_at_rest_[j] = system_.normal_force(j, rest, rest.slider_force, model::Side::left);
-      is_symmetric_ = is_symmetric_ && system_.normal_contact(j) < 0;
-    }
-  }
-
   /// With what normal forces that follow from the motion add: the force of a law changes by
   ///   df = slope b^T dq + (df/dN) dN,   dN the change of the force that presses, by the same formula,
   /// and with the slopes of blocks by other numbers than their own.
@@ -306,24 +291,24 @@ class Growth final : public numerics::NewtonProblem {
     std::vector<std::vector<model::Share>> changes(static_cast<std::size_t>(system_.law_count()));
     for (const Index law : system_.law_order()) {
       const Index by = system_.normal_contact(law);
-      if (by < 0 || by_normal_[law] == 0.0) continue;
+      if (by < 0 || contacts_.by_normal()[law] == 0.0) continue;
       auto& change = changes[static_cast<std::size_t>(law)];
       for (const model::Share& share : columns_[static_cast<std::size_t>(by)])
-        change.push_back({share.coordinate, by_normal_[law] * slope_[by] * share.weight});
+        change.push_back({share.coordinate, contacts_.by_normal()[law] * contacts_.slope()[by] * share.weight});
       if (by >= system_.first_law())
         for (const model::Share& share : changes[static_cast<std::size_t>(by - system_.first_law())])
-          change.push_back({share.coordinate, by_normal_[law] * share.weight});
+          change.push_back({share.coordinate, contacts_.by_normal()[law] * share.weight});
       for (const model::Share& row : columns_[static_cast<std::size_t>(system_.first_law() + law)])
         for (const model::Share& column : change) add(row, column, 1.0);
     }
-    for_each_cross_slope([&](Index i, Index k, double slope) {
+    contacts_.for_each_cross_slope([&](Index i, Index k, double slope) {
       for (const model::Share& row : columns_[static_cast<std::size_t>(i)])
         for (const model::Share& column : columns_[static_cast<std::size_t>(k)]) add(row, column, slope);
     });
     const auto n = static_cast<Index>(free_.size());
     SparseMatrix added(n, n);
     added.setFromTriplets(entries.begin(), entries.end());
-    unsymmetric_.compute(Eigen::SparseMatrix<double>(tangent_->with(slope_) + added));
+    unsymmetric_.compute(Eigen::SparseMatrix<double>(tangent_->with(contacts_.slope()) + added));
     return unsymmetric_.info() == Eigen::Success;
   }
 
@@ -331,9 +316,10 @@ class Growth final : public numerics::NewtonProblem {
   /// its determinant has changed its sign.
   bool is_stable() {
     if (free_.empty()) return true;
-    if (!factorise_resisting(tangent_->with(slope_), numerics::Pivots::positive, factor_, factorisations_, moving_))
+    if (!factorise_resisting(tangent_->with(contacts_.slope()), numerics::Pivots::positive, factor_, factorisations_,
+                             moving_))
       return false;
-    return is_symmetric_ || (factorise_with_normals() && unsymmetric_.signDeterminant() > 0.0);
+    return contacts_.is_symmetric() || (factorise_with_normals() && unsymmetric_.signDeterminant() > 0.0);
   }
 
   /// The coordinates that a little more of the loads would move most.
@@ -347,6 +333,7 @@ class Growth final : public numerics::NewtonProblem {
   }
 
   const system::LocallyNonlinear& system_;
+  ContactsFromRest contacts_;
   std::span<const model::Held> held_;
   Vector load_;
   std::vector<Index> place_, free_;  // place of a coordinate among the free ones, and back
@@ -354,7 +341,6 @@ class Growth final : public numerics::NewtonProblem {
   numerics::OrderedFactor factor_;
   std::optional<ContactTangent> tangent_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> unsymmetric_;  // where a normal force follows from the motion
-  bool is_symmetric_ = true;
   int factorisations_ = 0;
   double share_ = 1.0;  // of the loads
   system::State state_;
@@ -369,10 +355,8 @@ class Growth final : public numerics::NewtonProblem {
   bool is_round_off_ = false, has_stalled_ = false;
   bool has_full_steps_ = false;     // whether the residual falls or not
   bool slopes_are_bounded_ = true;  // else an equilibrium far away may be one that loads do not lead to
-  Vector accepted_, change_, residual_, slope_, virgin_;
+  Vector accepted_, change_, residual_;
   Vector reach_;  // of each contact, what its u is made of
-  std::vector<model::BlockAnswer> block_slopes_;
-  Vector by_normal_, normal_at_rest_;  // of each law: df/dN, and what presses where nothing has moved
 };
 
 }  // namespace
