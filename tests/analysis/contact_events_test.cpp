@@ -145,5 +145,58 @@ TEST(Events, AreKeptUpToANumberAndCountedBeyond) {
   EXPECT_EQ(analysis::warning_of(events), "of 100003 events the table has the first 100000, up to t = 49999.5 s");
 }
 
+// Turned round by its loads, and pressed by little for a while: N is the small difference of the preload and of what
+// lifts, so that mu N by the displacement and |T| differ by round-off. It slides for good.
+TEST(EventsOfAContact, AreNotMadeByTheRoundOffOfWhatPresses) {
+  const std::string model = R"(
+[[coordinate]]
+name = "x"
+mass = 1.0
+[[coordinate]]
+name = "y"
+mass = 1.0
+[[coordinate]]
+name = "z"
+mass = 1.0
+[[spring]]
+between = ["x", "ground"]
+stiffness = 10.0
+[[spring]]
+between = ["y", "ground"]
+stiffness = 10.0
+[[spring]]
+between = ["z", "ground"]
+stiffness = 100.0
+[[contact]]
+name = "pad"
+tangential = [{ x = 1.0 }, { y = 1.0 }]
+normal = { z = 1.0 }
+tangential_stiffness = 100.0
+normal_stiffness = 100.0
+friction_coefficient = 0.3
+normal_load = 1.0
+[[force]]
+on = "x"
+amplitude = 3.0
+angular_frequency = 2.0
+[[force]]
+on = "y"
+amplitude = 3.0
+angular_frequency = 2.0
+phase = -1.5707963267948966
+[[force]]
+on = "z"
+amplitude = 0.5
+angular_frequency = 5.0
+)";
+  for (const char* keys :
+       {"step = 0.001", "step = { tolerance = 1e-4 }", "method = \"average_acceleration\"\nstep = 0.001"}) {
+    const std::vector<Told> told = events_of(model, std::string(keys) + "\nduration = 15.0");
+    ASSERT_EQ(told.size(), 1U) << keys;
+    EXPECT_EQ(told.front().what, "slips");
+    EXPECT_NEAR(told.front().t, 0.0445, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace rubato

@@ -48,8 +48,13 @@ ContactEvents::ContactEvents(const system::LocallyNonlinear& system, const syste
 int ContactEvents::branch_of_law(Index contact, const system::State& state) const {
   if (contact >= system_.first_block()) {
     const Index b = system_.block_at(contact);
-    return static_cast<int>(system_.blocks()[static_cast<std::size_t>(b)].law->contact(
-        system_.block_point(b, state), state.memory.data() + system_.memory_of_block(b)));
+    const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(b)].law;
+    // What presses is told by the force that came with the memory: the displacement of two ends that move together has
+    // the round-off of theirs.
+    model::BlockPoint point = system_.block_point(b, state);
+    const Index normal = law.size() - 1;
+    point.u[normal] = law.clearance() + state.slider_force[contact + normal] / law.limit_stiffness(normal, true);
+    return static_cast<int>(law.contact(point, state.memory.data() + system_.memory_of_block(b)));
   }
   const Index law = contact - system_.first_law();
   return static_cast<int>(system_.laws()[static_cast<std::size_t>(law)].law->contact(

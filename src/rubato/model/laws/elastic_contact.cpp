@@ -54,7 +54,7 @@ class ElasticContact final : public BlockLaw {
     const double size = length(force);
     // At its limit: it slips on, or comes back; from rest both.
     double slip = 0.0;
-    if (!sticks(size, limit)) {
+    if (!sticks(size, limit, terms_of_limit(point))) {
       double power = 0.0;
       for (Index i = 0; i < n; ++i) power += memory[i] * point.rate[i];
       slip = power > 0.0 ? 1.0 : power == 0.0 ? 0.5 : 0.0;
@@ -112,16 +112,21 @@ class ElasticContact final : public BlockLaw {
     if (!(pressed > 0.0)) return Law::Contact::open;
     if (v_.directions == 0) return Law::Contact::slips_forwards;
     const Pair force{memory[0], v_.directions > 1 ? memory[1] : 0.0};
-    if (sticks(length(force), limit)) return Law::Contact::sticks;
+    if (sticks(length(force), limit, terms_of_limit(point))) return Law::Contact::sticks;
     return v_.directions == 1 && force[0] < 0.0 ? Law::Contact::slips_backwards : Law::Contact::slips_forwards;
   }
 
  private:
   static std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
 
-  static bool sticks(double size, double limit) {
+  /// @param terms  the largest of what the limit was a difference of, with whose round-off it comes
+  static bool sticks(double size, double limit, double terms) {
     constexpr double round_off = 256.0 * std::numeric_limits<double>::epsilon();
-    return size < limit * (1.0 - round_off);
+    return size < limit - round_off * terms;
+  }
+
+  double terms_of_limit(const BlockPoint& point) const {
+    return v_.friction_coefficient * v_.normal_stiffness * (std::abs(point.u[v_.directions]) + std::abs(v_.gap));
   }
 
   /// What presses; below zero where the ends are apart.
