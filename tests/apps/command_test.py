@@ -173,6 +173,81 @@ duration = 0.1
         self.assertEqual(check.returncode, 0)
         self.assertIn('falls.toml: warning: analysis "held": it will fail: no equilibrium was found', check.stderr)
 
+    def test_a_structure_that_gives_way_under_its_loads_leaves_other_analyses_alone(self):
+        (self.folder / "snaps.toml").write_text("""
+[[coordinate]]
+name = "x"
+mass = 1.0
+[[nonlinear_spring]]
+between = ["x", "ground"]
+force = "u*(1 - u)^2"
+[[force]]
+on = "x"
+expression = "1.0"
+[[analysis]]
+name = "rest"
+type = "static"
+[[analysis]]
+name = "from_rest"
+type = "transient"
+initial = "static"
+step = 0.01
+duration = 0.1
+[[analysis]]
+name = "goes"
+type = "transient"
+step = 0.01
+duration = 0.1
+output = { times = [0.05, 0.10000000000000002] }
+""")
+        result = self.run_command("run", "snaps.toml", "-o", "out", "-q")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn('analysis "rest" failed: there is no equilibrium that loads grown from zero lead to', result.stderr)
+        self.assertIn('analysis "from_rest" failed: it has no static start', result.stderr)
+        self.assertEqual(len(self.rows("out/goes.csv")), 3)
+        check = self.run_command("check", "snaps.toml")
+        self.assertEqual(check.returncode, 0)
+        self.assertIn('analysis "rest": it will fail: there is no equilibrium', check.stderr)
+
+    def test_contacts_between_rotations_are_headed_by_moments_and_angles(self):
+        (self.folder / "turns.toml").write_text("""
+[[node]]
+name = "hub"
+position = [0.0, 0.0]
+[[mass]]
+node = "hub"
+mass = 1.0
+inertia = 1.0
+[[spring]]
+between = ["hub.x", "ground"]
+stiffness = 1.0
+[[spring]]
+between = ["hub.y", "ground"]
+stiffness = 1.0
+[[spring]]
+between = ["hub.rz", "ground"]
+stiffness = 1.0
+[[contact]]
+name = "face"
+tangential = { "hub.rz" = 1.0 }
+normal = { "hub.x" = 1.0 }
+tangential_stiffness = 2.0
+normal_stiffness = 3.0
+friction_coefficient = 0.5
+normal_load = 1.0
+[[force]]
+on = "hub.rz"
+expression = "0.1"
+[[analysis]]
+name = "rest"
+type = "static"
+""")
+        result = self.run_command("run", "turns.toml", "-o", "out", "-q")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        heads = self.rows("out/rest.csv")[0]
+        for head in ("face.tangential_moment [N m]", "face.slip_angle [rad]", "face.normal_force [N]", "face.gap [m]"):
+            self.assertIn(head, heads)
+
     def test_a_wrong_study_leaves_earlier_results_alone(self):
         study = EXAMPLES / "single-mass" / "study.toml"
         self.run_command("run", study, "-o", "out", "-q")

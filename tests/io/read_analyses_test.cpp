@@ -136,6 +136,9 @@ TEST(AnalysisError, RefusesOutputThatCannotBe) {
             "study.toml:42:23: error: an interval of 1e-300 s makes 6e+301 rows, more than can be written (1e12)");
   EXPECT_EQ(verdict_adding("output = { times = [1, 61] }\n"),
             "study.toml:42:24: error: times: 61 s lies outside the run from 0 s to 60 s");
+  EXPECT_EQ(verdict_adding("output = { times = [1, 60.00000000000001] }\n"), "accepted");  // the end, by round-off
+  EXPECT_EQ(verdict_adding("output = { times = [1, 60.0000000001] }\n"),
+            "study.toml:42:24: error: times: 60.0000000001 s lies outside the run from 0 s to 60 s");
   EXPECT_EQ(verdict_adding("output = { times = [2, 1] }\n"), "study.toml:42:24: error: times must rise, got 1 after 2");
 }
 

@@ -88,5 +88,19 @@ TEST(PressedSlider, IsRefusedWhereNothingPresses) {
   EXPECT_THAT(refusal_of(model), testing::HasSubstr("two sliders are called \"rub\""));
 }
 
+TEST(PressedSlider, IsNotPressedByAContact) {
+  ModelDescription model = two_masses();
+  ContactDescription contact;
+  contact.name = "pad";
+  contact.normal = {{"z", 1.0}};
+  contact.normal_stiffness = 2.0;
+  model.contacts.push_back(contact);
+  model.sliders.front().normal_law = "pad";
+  EXPECT_EQ(
+      refusal_of(model),
+      "slider \"rub\": normal_load names the contact \"pad\", and contacts cannot press a slider; name a [[stop]] "
+      "across it, or make the slider a [[contact]] of its own");
+}
+
 }  // namespace
 }  // namespace rubato::model

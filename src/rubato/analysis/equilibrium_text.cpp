@@ -49,6 +49,12 @@ std::string reason(const integrate::Equilibrium& equilibrium) {
           "it",
           fmt::join(equilibrium.changing, "\", \""), list_of(equilibrium.moving));
     case EquilibriumOutcome::gives_way_on_the_way:
+      if (equilibrium.reached == 0.0)
+        return "no equilibrium was found that loads grown from zero lead to, not even under the smallest share of "
+               "them; "
+               "lower a friction_coefficient, give contacts a small gap or normal_load, or let a transient with "
+               "damping "
+               "find where it goes";
       return fmt::format(
           "there is no equilibrium that loads grown from zero lead to: at {:.4g} of them nothing resists a motion of "
           "{}; lower the loads, support it, or let a transient with damping find where it goes",
@@ -72,6 +78,12 @@ std::string complaint(const integrate::Equilibrium& equilibrium) {
   const std::string told = reason(equilibrium);
   if (told.empty() || !equilibrium.leaves_out_friction) return told;
   return told + "; equilibria leave out the friction of joints, which this model has: let a transient come to rest";
+}
+
+bool is_certain(const integrate::Equilibrium& equilibrium) {
+  using integrate::EquilibriumOutcome;
+  return equilibrium.outcome == EquilibriumOutcome::not_finite || equilibrium.outcome == EquilibriumOutcome::floats ||
+         equilibrium.outcome == EquilibriumOutcome::gives_way;
 }
 
 std::string warning_of_rounding(const integrate::Equilibrium& found) {

@@ -10,6 +10,9 @@ namespace rubato::analysis {
 /// where it found one.
 std::string complaint(const integrate::Equilibrium& equilibrium);
 
+/// Whether there is none for certain, or it lies in what the user gave; else a search that found none has failed.
+bool is_certain(const integrate::Equilibrium& equilibrium);
+
 /// What to tell of displacements that the rounding of the stiffness spoils; empty: nothing.
 std::string warning_of_rounding(const integrate::Equilibrium& found);
 

@@ -125,7 +125,7 @@ struct Plan {
     AnalysisOutline result{kind.is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
                            100.0 * static_cast<double>(kind.system().size())};
     result.key_bytes = result.expected_bytes;
-    result.warnings = plan->warnings;
+    result.warnings = warnings_of(*plan);
     return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
               return run_static(name, *plan, at.kind, context);

@@ -8,13 +8,6 @@
 namespace rubato::analysis {
 namespace {
 
-integrate::Equilibrium required(const integrate::StaticRequest& request, const integrate::SystemKind& kind,
-                                const system::State& start, const std::vector<model::Held>& held) {
-  integrate::Equilibrium found = kind.find_equilibrium(start, held);
-  if (const std::string why = complaint(found); !why.empty()) throw InvalidInput(request.where, request.title + why);
-  return found;
-}
-
 /// Forces, then moments, that hold prescribed displacements.
 void append_reactions(const integrate::Equilibrium& found, results::TableLayout& layout, std::vector<double>& row) {
   std::vector<std::string> forces, moments;
@@ -50,7 +43,11 @@ StaticPlan plan_static(const std::string& name, const Location& where, const mod
   results::check_section_forces(kind, description.section_forces, plan.title);
   plan.held = kind.held_displacements(request);
   plan.start = kind.static_start(where, plan.warnings);
-  if (kind.finds_equilibrium_at_once()) plan.found = required(request, kind, plan.start, plan.held);
+  if (kind.finds_equilibrium_at_once()) {
+    plan.found = kind.find_equilibrium(plan.start, plan.held);
+    plan.failure = complaint(*plan.found);
+    if (is_certain(*plan.found)) throw InvalidInput(where, plan.title + plan.failure);
+  }
   plan.observed = observed_or_all(description.observe, {kind.system(), kind.supports()});
   plan.section_forces = description.section_forces;
   return plan;

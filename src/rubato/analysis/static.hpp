@@ -19,6 +19,7 @@ struct StaticPlan {
   system::State start;                          ///< of the search
   std::optional<integrate::Equilibrium> found;  ///< empty: the search belongs to the run
   std::vector<std::string> warnings = {};       ///< of what the start took
+  std::string failure = {};                     ///< why the run will find none, where that is known; empty: it is not
 };
 
 /// Evaluates a description. Throws InvalidInput.

@@ -82,8 +82,8 @@ class LawBuilder {
     for (const SliderDescription& description : description_.sliders) {
       if (!description.is_law()) continue;
       LawBetween& law = pressed_[next++];
-      law.normal = build_normal_force(description, description_.sliders, model_, parameters_,
-                                      fmt::format("slider \"{}\"", law.name));
+      law.normal =
+          build_normal_force(description, description_, model_, parameters_, fmt::format("slider \"{}\"", law.name));
     }
     model_.laws.insert(model_.laws.end(), pressed_.begin(), pressed_.end());
   }

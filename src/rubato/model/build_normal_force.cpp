@@ -48,16 +48,21 @@ NormalForce build_normal_formula(const SliderDescription& description, const num
   return normal;
 }
 
-NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
-                               const Model& model, const numerics::Parameters& parameters, const std::string& part) {
+NormalForce build_normal_force(const SliderDescription& description, const ModelDescription& all, const Model& model,
+                               const numerics::Parameters& parameters, const std::string& part) {
   if (description.normal_law.empty()) return build_normal_formula(description, parameters, part);
   NormalForce normal;
   const std::string& name = description.normal_law;
   normal.stop = place_of(model.stops, name);
   if (normal.stop < 0) normal.law = place_of(model.laws, name);
   if (normal.depends_on_motion()) return normal;
-  const auto is_slider = [&](const SliderDescription& slider) { return slider.name == name; };
-  if (std::any_of(sliders.begin(), sliders.end(), is_slider))
+  if (place_of(all.contacts, name) >= 0)
+    throw InvalidInput(
+        description.normal_law_where,
+        fmt::format("{}: normal_load names the contact \"{}\", and contacts cannot press a slider; name a "
+                    "[[stop]] across it, or make the slider a [[contact]] of its own",
+                    part, name));
+  if (place_of(all.sliders, name) >= 0)
     throw InvalidInput(description.normal_law_where,
                        fmt::format("{}: the force of the slider \"{}\" rubs, it does not press; name a [[stop]] or a "
                                    "[[nonlinear_spring]] across it",

@@ -36,9 +36,10 @@ NormalForce build_normal_formula(const SliderDescription& description, const num
 
 /// What presses on a slider whose load does not stay the same, among the stops and laws of a model that has all of
 /// them. Throws InvalidInput.
+/// @param all   names the sliders and contacts, which cannot press
 /// @param part  "slider \"s1\""
-NormalForce build_normal_force(const SliderDescription& description, const std::vector<SliderDescription>& sliders,
-                               const Model& model, const numerics::Parameters& parameters, const std::string& part);
+NormalForce build_normal_force(const SliderDescription& description, const ModelDescription& all, const Model& model,
+                               const numerics::Parameters& parameters, const std::string& part);
 
 /// Adds sliders, stops, laws and contacts to a model that has all of its coordinates. Throws InvalidInput.
 void build_laws(const ModelDescription& description, const numerics::Parameters& parameters, NegativeLoad negative_load,

@@ -4,13 +4,15 @@
 #include <rubato/results/columns/contact_columns.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace rubato::results {
 
 /// Columns of contacts, laws of several numbers: forces and slips along their plane (with _1 and _2 where there are two
-/// directions), the normal force, the gap and, in a motion, what they dissipated.
+/// directions), the normal force, the gap and, in a motion, what they dissipated. Where all that u joins are rotations
+/// the first are moments and angles, and so are the others where d joins rotations only.
 class BlockColumns final : public ColumnGroup {
  public:
   /// @param in_motion  whether steps are booked
@@ -25,12 +27,20 @@ class BlockColumns final : public ColumnGroup {
   void append_since(const system::State& before, const system::State& state, std::vector<double>& row) override;
 
  private:
+  /// Those of one heading.
+  struct Kind {
+    bool is_rotation = false;
+    std::vector<Index> blocks;
+  };
+  static Kind& kind_of(std::array<Kind, 2>& kinds, bool is_rotation);
+  void add_rubbing(Index directions, const Kind& kind, TableLayout& layout) const;
   std::vector<std::string> names_of(const std::vector<Index>& blocks) const;
   Index directions_of(Index block) const;
 
   const system::LocallyNonlinear& system_;
   bool in_motion_;
-  std::vector<Index> rubbing_[model::largest_block];  // by how many directions they rub in
+  std::array<Kind, 2> rubbing_[model::largest_block];  // by how many directions they rub in
+  std::array<Kind, 2> pressing_;
   std::vector<Index> all_;
   Vector dissipated_;  // by each block in the steps that are booked [J]
 };
