@@ -7,6 +7,7 @@ where Chromium or chromedriver is not installed, or where there is no loopback n
 import base64
 import json
 import pathlib
+import re
 import shutil
 import socket
 import sys
@@ -42,6 +43,11 @@ class Report(unittest.TestCase):
             message = json.loads(entry["message"])["message"]
             if message["method"] == "Network.requestWillBeSent":
                 self.assertRegex(message["params"]["request"]["url"], "^(file|data|blob):", "nothing is fetched")
+
+    def test_no_function_of_the_page_has_the_name_of_another(self):
+        names = re.findall(r"^(?:async )?function (\w+)\(", page.read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertGreater(len(names), 100)
+        self.assertEqual(sorted({name for name in names if names.count(name) > 1}), [], "the scripts share one scope")
 
     def test_figures_are_drawn_when_they_come_into_view(self):
         count = self.browser.script("return document.querySelectorAll('figure').length")

@@ -39,7 +39,8 @@ inline AdaptiveRun run_adaptively(const system::LocallyNonlinear& system, const 
   const integrate::Method method = integrate::make_method(name);
   const auto stepper = make_stepper(method, system);
   const auto estimator =
-      make_estimator(default_estimator(method, tolerance, system.stop_count() + system.block_count() > 0), method, system, *stepper, end);
+      make_estimator(default_estimator(method, tolerance, system.stop_count() + system.block_count() > 0), method,
+                     system, *stepper, end);
   integrate::StepPlan plan;
   plan.locate_events = locate;
   plan.largest = end / 50.0;

@@ -83,10 +83,13 @@ bool ContactEvents::accepted(const system::State& before, const system::State& a
       const int then = is_located ? branch_at(false) : one.branch;
       if (then != one.branch) note_law(one, then, before.t);
       const bool is_block = one.contact >= system_.first_block();
-      const int now = is_located ? branch_at(true)
-                      : located_ && is_block
-                          ? static_cast<int>(located_->contact_of_block(system_.block_at(one.contact), after))
-                          : branch_of_law(one.contact, after);
+      int now = is_located ? branch_at(true) : branch_of_law(one.contact, after);
+      // At the gap, to what a located step leaves, the velocity tells.
+      if (located_ && is_block) {
+        constexpr int open = static_cast<int>(model::Law::Contact::open);
+        const int next = static_cast<int>(located_->contact_of_block(system_.block_at(one.contact), after));
+        if ((next == open) != (now == open)) now = next;
+      }
       if (now != one.branch) note_law(one, now, after.t);
       continue;
     }

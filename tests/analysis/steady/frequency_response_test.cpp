@@ -481,9 +481,10 @@ TEST(FrequencyResponse, ByThePeriodicSolverRefusesStopsAndSaysWhatTakesThem) {
     (void)plan_of(prepared);
     FAIL();
   } catch (const InvalidInput& fault) {
-    EXPECT_EQ(fault.message(),
-              "analysis \"frf\": the solver periodic knows sliders, and the model has the stop \"bumper\"; take solver = "
-              "\"harmonic_balance\" or \"time_marching\"");
+    EXPECT_EQ(
+        fault.message(),
+        "analysis \"frf\": the solver periodic knows sliders, and the model has the stop \"bumper\"; take solver = "
+        "\"harmonic_balance\" or \"time_marching\"");
   }
 }
 

@@ -20,7 +20,7 @@ function key_columns(analysis, table) {
 }
 
 /** Rows in groups that are equal in some parameters: [{name, rows}]. */
-function rows_by(parameters, count) {
+function rows_by_values_of(parameters, count) {
   const groups = new Map();
   for (let row = 0; row < count; ++row) {
     const name = parameters.map((parameter) => `${parameter.name} = ${value_text(parameter, parameter.values[row])}`).join(", ");
@@ -37,7 +37,7 @@ function campbell_figure(analysis, table, crossings) {
   const x = parameters.find((parameter) => parameter.name === speed) ?? parameters[0];
   const others = parameters.filter((parameter) => parameter !== x);
   const frequency = variable_of(table, "frequency");
-  const groups = rows_by(others, table.rows);
+  const groups = rows_by_values_of(others, table.rows);
   const orders = (engine_orders ?? "").split(", ").filter((text) => text).map(Number);
   const title = speed ? `${phrase(x.name)} [${speed_unit}]` : `${x.name} [SI]`;
   const most = bounds(table.overview[frequency.index].flat())[1];
@@ -91,7 +91,7 @@ function swept_figure(analysis, table) {
     caption: "Key numbers of the samples over a swept parameter; samples without a result have no point.", choosers,
     draw: (chosen) => {
       const column = columns[chosen[0]], x = parameters[parameters.length > 1 ? chosen[1] : 0];
-      const groups = is_grid ? rows_by(parameters.filter((parameter) => parameter !== x), table.rows) : [{name: "", rows: x.values.map((_, row) => row)}];
+      const groups = is_grid ? rows_by_values_of(parameters.filter((parameter) => parameter !== x), table.rows) : [{name: "", rows: x.values.map((_, row) => row)}];
       const shown = groups.slice(0, most_in_legend);
       return {
         traces: shown.map(({name, rows}, index) => {
