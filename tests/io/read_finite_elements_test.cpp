@@ -162,6 +162,21 @@ TEST(FiniteElementFiles, ServeByTheNamesOfDegreesOfFreedom) {
               "study.toml:6:1", "does not go with [model]");
 }
 
+// A node that an equation ties to another has no row either, and moves: a spring to it is none to the ground.
+TEST(FiniteElementFiles, TakeNoNodeForHeldThatTheDeckMayTieToOthers) {
+  const std::string joined = "[[spring]]\nbetween = [\"21.x\", \"3.x\"]\nstiffness = 10\n";
+  EXPECT_EQ(verdict_on("", "", calculix, joined), "accepted");
+  const std::string deck = content("brick.inp") + "\n*EQUATION\n2\n21, 1, 1.0, 3, 1, -1.0\n";
+  const std::string files =
+      "mesh = \"tied.inp\"\nstiffness = \"brick.sti\"\nmass = \"brick.mas\"\nrows = \"brick.dof\"\n";
+  const std::string message = verdict_on("tied.inp", deck, files, joined);
+  expect_says(message, "study.toml:7:12", "joins \"21.x\", of which the matrices have no row");
+  expect_says(message, "study.toml:7:12", "*EQUATION");
+  expect_says(message, "study.toml:7:12", "\"ground\" where it is held");
+  EXPECT_EQ(verdict_on("tied.inp", deck, files, "[[spring]]\nbetween = [\"ground\", \"3.x\"]\nstiffness = 10\n"),
+            "accepted");
+}
+
 TEST(FiniteElementFiles, LoseTheRowsThatASupportHolds) {
   const auto study = io::read_study_text(
       study_of(calculix, "[[support]]\nnode = \"ntop\"\nfix = [\"z\"]\n[[support]]\nnode = 3\nfix = [\"x\"]\n"),

@@ -137,6 +137,7 @@ class Builder {
       values->tail(model_.size() - first_of_nodes_).setZero();
     }
     places_.hold(built.fixed);
+    places_.doubt(built.doubtful, built.doubt);
     model_.structure = std::move(built.structure);
     model_.matrices = std::move(built.matrices);
   }

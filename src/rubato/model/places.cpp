@@ -24,6 +24,11 @@ Index Places::find(const std::string& name, const Location& where, const std::st
   if (name == "ground")
     throw InvalidInput(where, fmt::format("{} the ground, which does not move; name a coordinate", role));
   if (held_.count(name) > 0) throw InvalidInput(where, fmt::format("{} \"{}\", which a support holds", role, name));
+  if (doubtful_.count(name) > 0)
+    throw InvalidInput(where,
+                       fmt::format("{} \"{}\", of which the matrices have no row: it may be held, but {}; name a node "
+                                   "that has rows, or \"ground\" where it is held",
+                                   role, name, doubt_));
   refuse_missing_axis(name, where, role);
   const std::vector<std::string> what_does_not_move{"ground"};
   const bool means_ground =

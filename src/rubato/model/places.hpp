@@ -29,6 +29,12 @@ class Places {
     held_.insert(names.begin(), names.end());
   }
 
+  /// Names of what has no place and need not stand still either. @param doubt  what may be the case
+  void doubt(const std::vector<std::string>& names, const std::string& doubt) {
+    doubtful_.insert(names.begin(), names.end());
+    doubt_ = doubt;
+  }
+
   bool has(const std::string& name) const { return places_.count(name) > 0; }
   bool stands(const std::string& name) const { return name == "ground" || held_.count(name) > 0; }
   /// Throws InvalidInput for the ground, for what a support holds, and for a name that is no coordinate.
@@ -56,7 +62,8 @@ class Places {
   const numerics::Parameters& parameters_;
   bool has_finite_elements_;
   std::unordered_map<std::string, Index> places_;
-  std::unordered_set<std::string> held_;
+  std::unordered_set<std::string> held_, doubtful_;
+  std::string doubt_;
 };
 
 }  // namespace rubato::model

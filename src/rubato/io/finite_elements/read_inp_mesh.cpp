@@ -127,6 +127,21 @@ class InpReader {
                                      "deck has; write a flat deck, without parts, assemblies, systems and generated "
                                      "nodes, with the numbers that the matrices have",
                                      keyword.name));
+    static const std::vector<std::string> ties{"EQUATION",
+                                               "TIE",
+                                               "MPC",
+                                               "RIGID BODY",
+                                               "COUPLING",
+                                               "KINEMATIC",
+                                               "DISTRIBUTING",
+                                               "KINEMATIC COUPLING",
+                                               "RIGIDBODY",
+                                               "CYCLIC SYMMETRY MODEL",
+                                               "DISTRIBUTING COUPLING"};
+    if (mesh_.tie.empty() && std::find(ties.begin(), ties.end(), keyword.name) != ties.end()) {
+      mesh_.tie = keyword.name;
+      mesh_.tie_where = here_;
+    }
     section_ = Section::other;
     const auto refuse_input = [&] {
       if (!keyword.parameter("INPUT").empty())

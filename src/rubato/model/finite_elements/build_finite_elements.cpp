@@ -139,7 +139,18 @@ class Builder {
     size_ = next;
   }
 
+  /// Why a node without a row need not be held: it may be tied to others, or lie inside a reduced model.
+  std::string doubt() const {
+    if (files_.mesh && !files_.mesh->tie.empty())
+      return fmt::format("*{} (line {} of the mesh) may tie it to other nodes", files_.mesh->tie,
+                         files_.mesh->tie_where.line);
+    const bool is_reduced =
+        std::any_of(files_.rows.begin(), files_.rows.end(), [](const RowLabel& row) { return row.direction == 0; });
+    return is_reduced ? "the model is a reduced one, inside which nodes move without rows" : "";
+  }
+
   void take_nodes() {
+    built_.doubt = doubt();
     Structure& structure = built_.structure;
     structure.dimension = 3;
     for (std::size_t node = 0; node < files_.nodes.size(); ++node) {
@@ -150,8 +161,10 @@ class Builder {
       for (std::size_t axis = 0; axis < 6; ++axis) {
         const Index row = files_.places[node][axis];
         places[axis] = row == ground ? ground : place_[static_cast<std::size_t>(row)];
-        if (files_.mesh && is_held(files_.freedoms[node][axis]))
-          built_.fixed.push_back(fmt::format("{}.{}", structure.names.back(), axis_names[axis]));
+        if (!files_.mesh || !is_held(files_.freedoms[node][axis])) continue;
+        const bool is_doubtful = !built_.doubt.empty() && files_.freedoms[node][axis] == Freedom::held;
+        (is_doubtful ? built_.doubtful : built_.fixed)
+            .push_back(fmt::format("{}.{}", structure.names.back(), axis_names[axis]));
       }
       structure.places.push_back(places);
     }

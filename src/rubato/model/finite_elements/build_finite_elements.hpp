@@ -15,7 +15,10 @@ struct BuiltFiniteElements {
   std::vector<std::string> coordinates;  ///< of the rows that are free [n]
   std::vector<char> is_rotation;         ///< [n]
   std::vector<std::string> fixed;        ///< names of degrees of freedom that are held, by the files or by a support
-  FullMatrices matrices;                 ///< of the coordinates before and of these
+  /// Those without a row that may be held, and may as well follow others; empty unless the files leave it open.
+  std::vector<std::string> doubtful;
+  std::string doubt;      ///< why, for messages: what may be the case
+  FullMatrices matrices;  ///< of the coordinates before and of these
 };
 
 /// Throws InvalidInput for parts of the study that do not go with such a model, and for faulty masses and supports.

@@ -99,6 +99,9 @@ struct Mesh {
   std::vector<std::size_t> element_nodes;  ///< places among the nodes, element by element
   std::vector<NodeSet> sets;
   std::vector<MeshMaterial> materials;
+  /// The first keyword that ties nodes to others, so that the matrices lack rows of nodes that move; empty: none does.
+  std::string tie;
+  Location tie_where;
 
   /// The place of a node; nothing where the mesh does not have it.
   std::optional<std::size_t> place_of(std::int64_t node) const;
