@@ -8,7 +8,7 @@ namespace {
 
 using system::LocallyNonlinear;
 
-bool is_linear(const LocallyNonlinear& system) { return system.slider_count() == 0 && !system.has_laws(); }
+bool is_linear(const LocallyNonlinear& system) { return system.contact_count() == 0; }
 
 std::unique_ptr<SteadySolver> linear(const SteadyRoute& route, const LocallyNonlinear& system,
                                      const SteadyRequest& request, bool stuck) {

@@ -464,14 +464,17 @@ double bilinear_amplitude(double omega) {
 
 // A bilinear oscillator with k = 1 outward and 4 inward. Transients have decayed to exp(-0.05 t) < 1e-9; marching takes
 // its default steps of second order, 1e-3 of the amplitude.
-TEST(FrequencyResponse, OfAModelWithAStopIsMarched) {
-  const PreparedStudy prepared(bumper_text + "solver = \"time_marching\"\n");
-  const auto result = run(prepared, steady_solvers(plan_of(prepared).route));
-  ASSERT_EQ(result->report.status, RunStatus::done) << result->report.message;
-  const double frequencies[] = {0.9, 1.2, 1.5};
-  for (std::size_t row = 0; row < 3; ++row) {
-    const double expected = bilinear_amplitude(frequencies[row]);
-    EXPECT_NEAR(result->at(row, "amplitude", "mass"), expected, 2e-3 * expected) << frequencies[row];
+TEST(FrequencyResponse, OfAModelWithAStopIsMarchedOrBalanced) {
+  for (const char* solver : {"time_marching", "harmonic_balance"}) {
+    SCOPED_TRACE(solver);
+    const PreparedStudy prepared(bumper_text + "solver = \"" + solver + "\"\n");
+    const auto result = run(prepared, steady_solvers(plan_of(prepared).route));
+    ASSERT_EQ(result->report.status, RunStatus::done) << result->report.message;
+    const double frequencies[] = {0.9, 1.2, 1.5};
+    for (std::size_t row = 0; row < 3; ++row) {
+      const double expected = bilinear_amplitude(frequencies[row]);
+      EXPECT_NEAR(result->at(row, "amplitude", "mass"), expected, 2e-3 * expected) << frequencies[row];
+    }
   }
 }
 

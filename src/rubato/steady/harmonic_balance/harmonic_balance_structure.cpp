@@ -107,7 +107,7 @@ bool HarmonicBalanceSolver::Implementation::condense_one(CondensedHarmonic& harm
 }
 
 bool HarmonicBalanceSolver::Implementation::is_driven_beyond_friction(const system::Excitation& excitation) {
-  if (system.has_laws()) return false;  // they may bound the motion
+  if (has_laws()) return false;  // they may bound the motion
   if (!resonance) resonance.emplace(system);
   return resonance->is_driven_beyond_friction(excitation);
 }
