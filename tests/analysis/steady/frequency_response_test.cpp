@@ -430,67 +430,6 @@ TEST(FrequencyResponse, GoesOnPastCombinationsThatNoModelCanHave) {
       "between \"mass\" and \"ground\": stiffness must not be negative, got -1");
 }
 
-const std::string bumper_text =
-    "[parameters]\nOmega = 1.0\n"
-    "[[coordinate]]\nname = \"mass\"\nmass = 1.0\n"
-    "[[spring]]\nbetween = [\"mass\", \"ground\"]\nstiffness = 1.0\n"
-    "[[damper]]\nbetween = [\"mass\", \"ground\"]\ndamping = 0.1\n"
-    "[[stop]]\nname = \"bumper\"\nbetween = [\"mass\", \"ground\"]\ngap = 0.0\nstiffness = 3.0\n"
-    "[[force]]\non = \"mass\"\namplitude = 1.0\nangular_frequency = \"Omega\"\n"
-    "[[analysis]]\nname = \"frf\"\ntype = \"frequency_response\"\nangular_frequency = [0.9, 1.2, 1.5]\n";
-
-// Half peak to peak of x'' + 0.1 x' + x + 3 max(0, x) = cos(Omega t) after 100 periods, by Kutta's method.
-double bilinear_amplitude(double omega) {
-  const auto rate = [omega](double t, double x, double v) {
-    return std::cos(omega * t) - 0.1 * v - x - 3.0 * std::max(0.0, x);
-  };
-  const int steps = 2000, periods = 100;
-  const double h = 2.0 * std::numbers::pi / omega / steps;
-  double x = 0.0, v = 0.0, low = HUGE_VAL, high = -HUGE_VAL;
-  for (int i = 0; i < periods * steps; ++i) {
-    const double t = h * i;
-    const double k1 = v, l1 = rate(t, x, v);
-    const double k2 = v + 0.5 * h * l1, l2 = rate(t + 0.5 * h, x + 0.5 * h * k1, k2);
-    const double k3 = v + 0.5 * h * l2, l3 = rate(t + 0.5 * h, x + 0.5 * h * k2, k3);
-    const double k4 = v + h * l3, l4 = rate(t + h, x + h * k3, k4);
-    x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-    v += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
-    if (i < (periods - 1) * steps) continue;
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  return 0.5 * (high - low);
-}
-
-// A bilinear oscillator with k = 1 outward and 4 inward. Transients have decayed to exp(-0.05 t) < 1e-9; marching takes
-// its default steps of second order, 1e-3 of the amplitude.
-TEST(FrequencyResponse, OfAModelWithAStopIsMarchedOrBalanced) {
-  for (const char* solver : {"time_marching", "harmonic_balance"}) {
-    SCOPED_TRACE(solver);
-    const PreparedStudy prepared(bumper_text + "solver = \"" + solver + "\"\n");
-    const auto result = run(prepared, steady_solvers(plan_of(prepared).route));
-    ASSERT_EQ(result->report.status, RunStatus::done) << result->report.message;
-    const double frequencies[] = {0.9, 1.2, 1.5};
-    for (std::size_t row = 0; row < 3; ++row) {
-      const double expected = bilinear_amplitude(frequencies[row]);
-      EXPECT_NEAR(result->at(row, "amplitude", "mass"), expected, 2e-3 * expected) << frequencies[row];
-    }
-  }
-}
-
-TEST(FrequencyResponse, ByThePeriodicSolverRefusesStopsAndSaysWhatTakesThem) {
-  const PreparedStudy prepared(bumper_text + "solver = \"periodic\"\n");
-  try {
-    (void)plan_of(prepared);
-    FAIL();
-  } catch (const InvalidInput& fault) {
-    EXPECT_EQ(
-        fault.message(),
-        "analysis \"frf\": the solver periodic knows sliders, and the model has the stop \"bumper\"; take solver = "
-        "\"harmonic_balance\" or \"time_marching\"");
-  }
-}
-
 TEST(FrequencyText, TellsHertzBesideWhereAStudyExcitesByHertz) {
   EXPECT_EQ(frequency_text(7.5, 1.0), "angular_frequency = 7.5 rad/s");
   EXPECT_EQ(frequency_text(4.0 * std::numbers::pi, 0.5 / std::numbers::pi),
