@@ -156,8 +156,7 @@ std::optional<std::string> refusal(Route route, const integrate::SystemKind& kin
   const std::string label = label_of(*refused, parts);
   if (route == Route::method_study)
     return fmt::format("{} needs a linear model with a closed-form response, this one has {}", title_of(route), label);
-  return fmt::format("{} knows sliders, and the model has {}; {}", title_of(route), label,
-                     handling(refused->family, route).instead);
+  return fmt::format("{} does not take {}; {}", title_of(route), label, handling(refused->family, route).instead);
 }
 
 std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind) {

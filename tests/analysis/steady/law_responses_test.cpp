@@ -84,10 +84,9 @@ type = "frequency_response"
 angular_frequency = [0.7, 1.0]
 solver = "periodic"
 )"));
-  EXPECT_EQ(
-      message_of(prepared),
-      "analysis \"frf\": the solver periodic knows sliders, and the model has the bouc_wen \"foot\"; take solver = "
-      "\"harmonic_balance\" or \"time_marching\"");
+  EXPECT_EQ(message_of(prepared),
+            "analysis \"frf\": the solver periodic does not take the bouc_wen \"foot\"; take solver = "
+            "\"harmonic_balance\" or \"time_marching\"");
 }
 
 TEST(LawResponses, OfLawsThatDependOnTimeAreRefused) {
@@ -164,10 +163,9 @@ parameter = "N0"
 range = [0.1, 0.2]
 angular_frequency = { from = 0.5, to = 1.5 }
 )"));
-  EXPECT_EQ(
-      refusal(Route::damper_curve, *prepared.kind),
-      "a damper curve knows sliders, and the model has the bouc_wen \"foot\"; take a frequency_response with solver "
-      "= \"harmonic_balance\" and a sweep");
+  EXPECT_EQ(refusal(Route::damper_curve, *prepared.kind),
+            "a damper curve does not take the bouc_wen \"foot\"; take a frequency_response with solver "
+            "= \"harmonic_balance\" and a sweep");
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ void require_possible(const system::LocallyNonlinear& system) {
                     largest_exact, system.size()));
   if (system.stop_count() > 0)
     throw InvalidInput(
-        fmt::format("the method exact knows sliders, and the model has the stop \"{}\"; take "
+        fmt::format("the method exact does not take the stop \"{}\"; take "
                     "\"generalized_alpha\" with step = {{ tolerance = ..., events = \"locate\" }}",
                     system.stops().front().name));
   if (system.has_laws())
     throw InvalidInput(
-        fmt::format("the method exact knows sliders, and the model has the law \"{}\"; take "
+        fmt::format("the method exact does not take the law \"{}\"; take "
                     "\"generalized_alpha\" with step = {{ tolerance = ... }}",
                     system.law_count() > 0 ? system.laws().front().name : system.blocks().front().name));
   for (const auto& term : system.loads().terms())
