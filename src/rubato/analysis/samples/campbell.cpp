@@ -116,7 +116,8 @@ void Campbell::write(const std::string& name, const std::vector<std::string>& mo
     layout.blocks.push_back({variable, unit, description, "", {}});
   };
   for (std::size_t i = 0; i < sweep_.names().size(); ++i)
-    add(sweep_.names()[i], "", i == plan_.speed ? "speed at the crossing [" + plan_.unit + "]" : "swept parameter");
+    add(sweep_.names()[i], i == plan_.speed ? plan_.unit : "",
+        i == plan_.speed ? "at the crossing" : "swept parameter");
   add("engine_order", "1", "multiple of the speed");
   layout.blocks.push_back({"mode", "1", "whose natural frequency is met", "", {}, modes});
   add("frequency", "Hz", "of both");
