@@ -55,4 +55,17 @@ class BlockLaw {
   virtual Law::Contact contact(const BlockPoint& point, const double* memory) const = 0;
 };
 
+/// Of a law of several numbers that knows the slopes of its steps, for what it does over many of them: LawSlopes of a
+/// block.
+class BlockSlopes {
+ public:
+  virtual ~BlockSlopes() = default;
+
+  /// The slopes of what BlockLaw::advance() gives.
+  /// @param slopes  rows by the displacements and the rates at `to`, at `from`, by the memory; columns of the forces,
+  ///                then of the memory at `to` [4 d + m x d + m], all zero at first
+  /// @return false where it does not know them
+  virtual bool slopes(const BlockPoint& from, const double* memory, const BlockPoint& to, Matrix& slopes) const = 0;
+};
+
 }  // namespace rubato::model

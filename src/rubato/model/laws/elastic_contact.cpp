@@ -16,7 +16,7 @@ double length(const Pair& a) { return std::hypot(a[0], a[1]); }
 
 /// Contacts that rub in one direction have a second one in which nothing ever happens: one formula serves both, and
 /// hypot() of a number and zero is that number.
-class ElasticContact final : public BlockLaw {
+class ElasticContact final : public BlockLaw, public BlockSlopes {
  public:
   explicit ElasticContact(const ContactValues& values) : v_(values), kt_(values.tangential_stiffness) {
     assert(values.directions >= 0 && values.directions < largest_block && values.normal_stiffness > 0.0);
@@ -40,6 +40,19 @@ class ElasticContact final : public BlockLaw {
       close(travel(from, to), begin, end, answer);
     std::copy_n(answer.force, n, next);
     return answer;
+  }
+
+  // Of two directions only differences are known.
+  bool slopes(const BlockPoint& from, const double* memory, const BlockPoint& to, Matrix& slopes) const override {
+    const Index n = v_.directions;
+    if (n > 1) return false;
+    const double begin = pressing(from.u), end = pressing(to.u), kn = v_.normal_stiffness;
+    if (end < 0.0) return true;
+    slopes(n, n) = kn;
+    if (n == 0) return true;
+    add_slopes(memory[0], travel(from, to)[0], begin, end, slopes.col(0));
+    slopes.col(2) = slopes.col(0);
+    return true;
   }
 
   BlockAnswer at(const BlockPoint& point, const double* memory) const override {
@@ -168,6 +181,38 @@ class ElasticContact final : public BlockLaw {
       for (Index j = 0; j < n && n > 1; ++j)
         answer.by_u[i][j] = limit * ((i == j ? 1.0 : 0.0) - e * du[idx(j)] / size) / size;
     }
+  }
+
+  /// Of the force in the one direction, which is the memory too: by u and d at the end (rows 0, 1), at the start (4,
+  /// 5), by the memory (8).
+  void add_slopes(double memory, double du, double begin, double end, Eigen::Ref<Vector> slopes) const {
+    const double mu = v_.friction_coefficient, kn = v_.normal_stiffness, limit = mu * end;
+    if (begin > 0.0) {
+      const double first = mu * begin;
+      const bool is_within = std::abs(memory) <= first;
+      const double force = is_within ? memory : std::copysign(first, memory), trial = force + kt_ * du;
+      if (std::abs(trial) > limit) {
+        slopes[1] = std::copysign(mu * kn, trial);
+        return;
+      }
+      slopes[0] = kt_;
+      slopes[4] = -kt_;
+      if (is_within)
+        slopes[8] = 1.0;
+      else
+        slopes[5] = std::copysign(mu * kn, memory);
+      return;
+    }
+    const double rise = end - begin, touching = rise > 0.0 ? end / rise : 1.0;
+    if (kt_ * touching * std::abs(du) > limit) {
+      slopes[1] = std::copysign(mu * kn, du);
+      return;
+    }
+    slopes[0] = kt_ * touching;
+    slopes[4] = -slopes[0];
+    if (!(rise > 0.0)) return;
+    slopes[1] = -kn * kt_ * du * begin / (rise * rise);
+    slopes[5] = kn * kt_ * du * end / (rise * rise);
   }
 
   void go_on(const Pair& force, const Pair& du, double begin, double end, BlockAnswer& answer) const {

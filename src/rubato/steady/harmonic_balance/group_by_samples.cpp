@@ -7,7 +7,11 @@
 
 namespace rubato::steady {
 
-GroupBySamples::GroupBySamples(const LawGroup& law) : law_(law), d_(law.size()), memory_(law.memory_size()) {
+GroupBySamples::GroupBySamples(const LawGroup& law)
+    : law_(law),
+      d_(law.size()),
+      memory_(law.memory_size()),
+      derivatives_(law.size(), law.memory_size(), law.depends_on_rate()) {
   for (Vector* of_memory : {&now_, &next_, &length_, &memory_there_, &next_there_}) of_memory->setZero(memory_);
   for (Vector* of_numbers : {&scale_, &force_now_, &mean_force_, &u_there_, &rate_there_, &force_there_})
     of_numbers->setZero(d_);
@@ -86,6 +90,10 @@ void GroupBySamples::add_dissipated(Vector& work) const {
 // Away from where the step goes: a change of u must not carry it over the limit that it has just reached.
 void GroupBySamples::step_slopes(const GroupPoint& from, const double* memory, const GroupPoint& to) {
   slopes_.setZero();
+  if (law_.slopes(from, memory, to, slopes_)) {
+    law_.advance(from, memory, to, next_.data(), force_now_.data(), nullptr);
+    return;
+  }
   law_.advance(from, memory, to, next_.data(), force_now_.data(), &tangent_);
   const auto differ = [&](const GroupPoint& begin, const double* past, const GroupPoint& end, double by, auto row) {
     law_.advance(begin, past, end, next_there_.data(), force_there_.data(), nullptr);
@@ -128,108 +136,42 @@ void GroupBySamples::step_slopes(const GroupPoint& from, const double* memory, c
 }
 
 Matrix GroupBySamples::carry(const Vector& start) {
-  Matrix by_start = Matrix::Identity(memory_, memory_);
+  step_slopes_of_period(start);
+  return derivatives_.by_start(steps_);
+}
+
+/// The slopes of all steps of a period, one below another.
+void GroupBySamples::step_slopes_of_period(const Vector& start) {
+  const Index rows = derivatives_.step_rows(), count = u_.cols();
+  steps_.resize(count * rows, d_ + memory_);
   Vector now = start, after(memory_);
-  for (Index i = 1; i <= u_.cols(); ++i) {
+  for (Index i = 1; i <= count; ++i) {
     step_slopes(point(i - 1), now.data(), point(i));
-    by_start = (slopes_.bottomRightCorner(memory_, memory_).transpose() * by_start).eval();
+    steps_.middleRows((i - 1) * rows, rows) = slopes_;
     after = next_;
     std::swap(now, after);
-  }
-  return by_start;
-}
-
-/// How a displacement and its rate at a sample follow from the unknowns of its number.
-void GroupBySamples::set_motion(Index sample, Vector& of_u, Vector& of_rate) const {
-  of_u[0] = 1.0;
-  of_rate[0] = 0.0;
-  for (int o = 0; o < orders_.count; ++o) {
-    const Complex z = angles_->unit_vector(static_cast<long>(orders_.at(o)) * static_cast<long>(sample));
-    const double number = angular_frequency_ * orders_.at(o);
-    of_u[1 + 2 * o] = z.real();
-    of_u[2 + 2 * o] = -z.imag();
-    of_rate[1 + 2 * o] = -number * z.imag();
-    of_rate[2 + 2 * o] = -number * z.real();
-  }
-}
-
-/// The derivatives of a quantity at the end of a step, by the slopes of the step.
-void GroupBySamples::take_step(const Vector& u0, const Vector& rate0, const Vector& u1, const Vector& rate1,
-                               const Matrix& of_memory, Index quantity, Vector& sum) const {
-  const auto s = slopes_.col(quantity);
-  sum.noalias() = of_memory * s.tail(memory_);
-  const Index size = unknowns();
-  for (Index j = 0; j < d_; ++j) {
-    auto own = sum.segment(column(j), size);
-    own += s[j] * u1 + s[2 * d_ + j] * u0;
-    if (law_.depends_on_rate()) own += s[d_ + j] * rate1 + s[3 * d_ + j] * rate0;
-  }
-}
-
-/// Carries the derivatives by all unknowns along a period. With `forces` those of the forces are written too.
-void GroupBySamples::carry(const Vector& start, Matrix& of_memory, bool forces) {
-  const Index size = unknowns();
-  Vector u0(size), rate0(size), u1(size), rate1(size), now = start, after(memory_), sum(d_ * size);
-  set_motion(0, u0, rate0);
-  Matrix moved(d_ * size, memory_);
-  for (Index i = 1; i <= u_.cols(); ++i) {
-    set_motion(i, u1, rate1);
-    step_slopes(point(i - 1), now.data(), point(i));
-    for (Index q = forces ? 0 : d_; q < d_ + memory_; ++q) {
-      take_step(u0, rate0, u1, rate1, of_memory, q, sum);
-      if (q < d_)
-        of_forces_[static_cast<std::size_t>(q)].row(i % u_.cols()) = sum.transpose();
-      else
-        moved.col(q - d_) = sum;
-    }
-    std::swap(of_memory, moved);
-    after = next_;
-    std::swap(now, after);
-    std::swap(u0, u1);
-    std::swap(rate0, rate1);
   }
 }
 
 void GroupBySamples::differentiate() {
-  const Index size = unknowns();
-  of_forces_.resize(static_cast<std::size_t>(d_));
-  for (Matrix& of_force : of_forces_) of_force.resize(u_.cols(), d_ * size);
-  Matrix of_memory = Matrix::Zero(d_ * size, memory_);
+  derivatives_.prepare(*angles_, angular_frequency_);
+  constexpr double least = Closing::forgets_by_differences;
+  step_slopes_of_period(started_.back());
   if (memory_ > 0) {
-    const Matrix by_start = carry(started_.back());
-    const double slowest = (Matrix::Identity(memory_, memory_) - by_start).jacobiSvd().singularValues().minCoeff();
-    constexpr double least = Closing::forgets_by_differences;
-    if (slowest <= least) {
+    const Matrix lost = Matrix::Identity(memory_, memory_) - derivatives_.by_start(steps_);
+    if (lost.jacobiSvd().singularValues().minCoeff() <= least) {
       // What is never forgotten has its derivatives from the first periods.
-      Vector of_u(size), of_rate(size), sum(d_ * size);
-      const Vector none = Vector::Zero(size);
-      set_motion(0, of_u, of_rate);
       const Vector nowhere = Vector::Zero(d_), rest = Vector::Zero(memory_);
       step_slopes({nowhere.data(), nowhere.data()}, rest.data(), point(0));
-      const Matrix from_rest = Matrix::Zero(d_ * size, memory_);
-      for (Index q = 0; q < memory_; ++q) {
-        take_step(none, none, of_u, of_rate, from_rest, d_ + q, sum);
-        of_memory.col(q) = sum;
+      derivatives_.start_from_rest(slopes_);
+      for (std::size_t period = 0; period + 1 < started_.size(); ++period) {
+        step_slopes_of_period(started_[period]);
+        derivatives_.carry(steps_);
       }
-      for (std::size_t period = 0; period + 1 < started_.size(); ++period) carry(started_[period], of_memory, false);
-    }
-    Matrix after = of_memory;
-    carry(started_.back(), after, false);
-    of_memory += Closing::solve(by_start, (after - of_memory).transpose(), least).transpose();
-  }
-  carry(started_.back(), of_memory, true);
-  by_.resize(static_cast<std::size_t>(d_));
-  mean_by_.resize(d_ * size, d_);
-  for (Index i = 0; i < d_; ++i) {
-    const Matrix& of_force = of_forces_[static_cast<std::size_t>(i)];
-    ComplexMatrix& by = by_[static_cast<std::size_t>(i)];
-    by.resize(orders_.count, d_ * size);
-    for (Index c = 0; c < d_ * size; ++c) {
-      const std::vector<Complex>& spectrum = angles_->analyse(of_force.col(c).data());
-      mean_by_(c, i) = 0.5 * spectrum[0].real();
-      for (int k = 0; k < orders_.count; ++k) by(k, c) = spectrum[static_cast<std::size_t>(orders_.at(k))];
+      if (started_.size() > 1) step_slopes_of_period(started_.back());
     }
   }
+  derivatives_.close(steps_, least);
 }
 
 }  // namespace rubato::steady

@@ -32,6 +32,8 @@ constexpr int fewest_for_groups = 8;
 
 // The orders a step adds: enough to pay for solving again.
 int more(int count) { return count + std::max(1, count / 2); }
+/// Orders to which a step adds about so many.
+int fewer(int count) { return std::max(1, (2 * count + 2) / 3); }
 
 // Samples of laws: some for each of the orders, and so many that what they change takes this share of the tolerance.
 constexpr int most_samples = 1 << 14;
@@ -243,6 +245,7 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
   Vector compliance;
   has_answer = false;
   bool is_sampled_anew = false;  // a balance of the same orders, with more samples
+  bool has_samples_to_spare = false;
   for (;;) {
     const Orders orders{stride, count};
     const int probes = orders_to_probe(excitation, orders);
@@ -274,6 +277,8 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
       const int samples = samples_for(orders, samples_wanted);
       is_sampled_anew = of_samples > share_of_samples * options.tolerance && samples < most_samples;
       if (is_sampled_anew) samples_wanted = 4 * samples;
+      // Of second order: with a quarter of the samples sixteen times as much.
+      has_samples_to_spare = !eq.groups().empty() && of_samples < share_of_samples * options.tolerance / 64.0;
     }
     response.error = truncation_error(probes);
     // The linear estimate knows nothing of what stiff contacts do as orders are added, nor of light parts that open and
@@ -291,7 +296,11 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
     if (!is_sampled_anew && response.error <= options.tolerance) {
       // A point that needed few orders lets the next one try fewer.
       firmness = firmness_used;
-      count_wanted = response.error < 0.02 * options.tolerance ? std::max(1, 2 * count / 3) : count;
+      const bool is_plenty = response.error < 0.02 * options.tolerance;
+      count_wanted = is_plenty ? std::max(1, 2 * count / 3) : count;
+      if (has_samples_to_spare) samples_wanted /= 4;
+      // Groups are balanced twice: the next point as often as this one, or with fewer orders both times.
+      if (!eq.groups().empty()) count_wanted = fewer(response.error < 0.25 * options.tolerance ? fewer(count) : count);
       return true;
     }
     if ((count >= most && !is_sampled_anew) || response.iterations - first_iteration > most_iterations) return false;

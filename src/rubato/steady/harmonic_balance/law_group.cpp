@@ -26,6 +26,10 @@ class OneBlock final : public LawGroup {
     for (Index i = 0; i < size(); ++i)
       for (Index j = 0; j < size(); ++j) (*slopes)(i, j) = answer.by_u[i][j];
   }
+  bool slopes(const GroupPoint& from, const double* memory, const GroupPoint& to, Matrix& slopes) const override {
+    const auto* known = dynamic_cast<const model::BlockSlopes*>(&law_);
+    return known && known->slopes(point(from), memory, point(to), slopes);
+  }
   void add_dissipated(const GroupPoint& from, const double* memory, const GroupPoint& to, const double* next,
                       Vector& work) const override {
     work[place_] += law_.dissipated(point(from), memory, point(to), next);

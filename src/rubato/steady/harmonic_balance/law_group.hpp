@@ -30,6 +30,11 @@ class LawGroup {
   ///                [d x 2d]
   virtual void advance(const GroupPoint& from, const double* memory, const GroupPoint& to, double* next, double* force,
                        Matrix* slopes) const = 0;
+  /// The slopes of a step, where they are known in closed form; else differences take their place.
+  /// @param slopes  rows by the displacements and rates at `to`, at `from`, by the memory; columns of the forces and of
+  ///                the memory at `to` [4 d + m x d + m], all zero at first
+  /// @return whether they are known
+  virtual bool slopes(const GroupPoint&, const double*, const GroupPoint&, Matrix&) const { return false; }
   /// Adds what each law of the group dissipates in the step [J]; `next` as advance() wrote it.
   /// @param work  by the laws of the system, the blocks behind the scalar ones
   virtual void add_dissipated(const GroupPoint& from, const double* memory, const GroupPoint& to, const double* next,
