@@ -50,6 +50,7 @@ PICTURES = {
     "slider-crank-flexible": {"drive": ("Forces and moments of laws, friction and drives", 1, {"Quantity": "Drive moment"})},
     "shaking-sieve": {"motion": "Travel of the joints that slide",
                       "drive": ("Forces and moments of laws, friction and drives", 1, {"Quantity": "Drive moment"})},
+    "wheel-suspension": {"ride": RESPONSES},
     "geared-pair": {"angle": (ROTATIONS, 1, {"Lines": ["azimuth"]})},
     "deployable-panel": {"positions": [0.0, 0.6, 1.07, 1.5, 1.84, 4.5], "angles": (ROTATIONS, 1, {"Lines": ["wall", "first", "second"]}),
                          "energy": "Energy ledger"},

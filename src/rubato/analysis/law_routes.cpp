@@ -34,6 +34,9 @@ constexpr const char* small_steps = "take \"generalized_alpha\" with step = { to
 constexpr const char* located = "take \"generalized_alpha\" with step = { tolerance = ..., events = \"locate\" }";
 constexpr const char* balanced_sweep = "take a frequency_response with solver = \"harmonic_balance\" and a sweep";
 constexpr const char* transient = "take a transient";
+constexpr const char* stiff_friction =
+    "before it slips it has no stiffness, about which small motions are: take a [[slider]] with a stiffness between "
+    "coordinates of its parts, or a transient";
 
 constexpr Handling takes(const char* how) { return {how, ""}; }
 constexpr Handling refuses(const char* instead = "") { return {"", instead}; }
@@ -96,24 +99,24 @@ constexpr Row pressed_slider{
     refuses(),                  // method_study
 };
 constexpr Row joint_friction{
-    takes("yes"),          // steps
-    refuses(small_steps),  // exact
-    takes("yes"),          // equilibrium
-    takes("stuck, free"),  // modes
-    refuses(transient),    // periodic
-    refuses(transient),    // harmonic_balance
-    refuses(transient),    // time_marching
-    refuses(transient),    // damper_curve
-    refuses(),             // method_study
+    takes("yes"),             // steps
+    refuses(small_steps),     // exact
+    takes("yes"),             // equilibrium
+    takes("stuck, free"),     // modes
+    refuses(stiff_friction),  // periodic
+    refuses(stiff_friction),  // harmonic_balance
+    refuses(stiff_friction),  // time_marching
+    refuses(transient),       // damper_curve
+    refuses(),                // method_study
 };
 constexpr Row lock{
     takes("yes"),          // steps
     refuses(small_steps),  // exact
     takes("as it is"),     // equilibrium
     takes("as it is"),     // modes
-    refuses(transient),    // periodic
-    refuses(transient),    // harmonic_balance
-    refuses(transient),    // time_marching
+    takes("as it is"),     // periodic
+    takes("as it is"),     // harmonic_balance
+    takes("as it is"),     // time_marching
     refuses(transient),    // damper_curve
     refuses(),             // method_study
 };

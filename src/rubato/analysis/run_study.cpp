@@ -153,11 +153,11 @@ struct Plan {
   }
 
   PlannedAnalysis operator()(const model::FrequencyResponseDescription& response) const {
-    require_structure();
     const auto plan = std::make_shared<const FrequencyResponsePlan>(
         plan_frequency_response(analysis.name, analysis.where, response, input));
-    at_the_analysis([&] { (void)steady::steady_solvers(plan->route).response(input.structure(), plan->request); });
-    return {outline(*plan, input.structure().slider_count()),
+    const auto& system = plan->system(input);
+    at_the_analysis([&] { (void)steady::steady_solvers(plan->route).response(system, plan->request); });
+    return {outline(*plan, system.slider_count()),
             [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
               return run_frequency_response(name, *plan, at, steady::steady_solvers(plan->route), context);
@@ -182,7 +182,7 @@ struct Plan {
       throw InvalidInput(
           analysis.where,
           fmt::format("analysis \"{}\": a mechanism (bodies, joints, geometrically exact beams) is analysed "
-                      "by type = \"transient\", \"static\" or \"modes\"",
+                      "by type = \"transient\", \"static\", \"modes\" or \"frequency_response\"",
                       analysis.name));
   }
 

@@ -379,6 +379,7 @@ struct FrequencyResponseDescription {
   std::optional<MethodDescription> method;                     ///< of time marching, as the two below
   std::optional<Quantity> steps_per_period, max_periods;
   std::optional<WaveformsDescription> waveforms;
+  std::optional<Location> about_equilibrium;  ///< of a mechanism: where that was asked for
 };
 
 /// A configuration that a transient of the same study reaches.

@@ -3,6 +3,7 @@
 #include <rubato/system/excitation.hpp>
 
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace rubato::steady {
@@ -12,6 +13,23 @@ struct SteadyRequest {
   /// A coordinate, or the difference of two (`second` = ground: the first alone).
   struct Observed {
     Index first = 0, second = ground;
+    std::vector<model::Share> shares = {};  ///< instead: a sum of coordinates times weights
+
+    /// Shows the coordinates with their weights.
+    template <class Show>
+    void for_each(Show&& show) const {
+      for (const model::Share& share : shares) show(share.coordinate, share.weight);
+      if (!shares.empty()) return;
+      if (first != ground) show(first, 1.0);
+      if (second != ground) show(second, -1.0);
+    }
+    /// Its value in a motion of all coordinates [n].
+    template <class Motion>
+    auto of(const Motion& motion) const {
+      std::decay_t<decltype(motion[0])> sum{};
+      for_each([&](Index coordinate, double weight) { sum += weight * motion[coordinate]; });
+      return sum;
+    }
   };
   std::vector<Observed> observed;
   std::vector<int> harmonics = {1};  ///< orders over the fundamental, >= 1

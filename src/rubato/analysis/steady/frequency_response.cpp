@@ -154,6 +154,12 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
         break;
       }
   }
+  if (const Tally& far = counts.excursions; far.count > 0.0) {
+    const auto [line, step] = split(far.first);
+    const std::string told = solver ? solver->excursion(line, step) : "the motion is no small one";
+    warnings.push_back(
+        fmt::format("at {} {} ({} with such a motion)", place_of(plan, far.first), told, points_text(far.count)));
+  }
   if (const Tally& unbounded = counts.of(PointStatus::unbounded); unbounded.count > 0.0)
     warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
                                    place_of(plan, unbounded.first), points_text(unbounded.count)));
@@ -184,7 +190,7 @@ RunReport run_frequency_response(const std::string& name, const FrequencyRespons
                                  const steady::SteadySolvers& solvers, RunContext& context) {
   const SweepTables layouts{{name, plan, input}, {name, plan}, {name, plan, input}};
   context.progress.begin(name, plan.points(), "points");
-  SweepProgress progress(context.progress, input.structure().size() > 100 ? 1 : 64);
+  SweepProgress progress(context.progress, plan.system(input).size() > 100 ? 1 : 64);
   tbb::enumerable_thread_specific<std::unique_ptr<PieceSolver>> workers;
   const auto worker = [&]() -> PieceSolver& {
     auto& mine = workers.local();

@@ -56,7 +56,7 @@ PieceSolver::Lane& PieceSolver::lane(std::size_t index) {
     Lane lane;
     lane.drive =
         std::make_unique<ParametricExcitation>(input_, plan_.dependence, plan_.sweep.places(), plan_.excitation);
-    if (plan_.route.kind == steady::SteadyRoute::Kind::time_marching) lane.drive->allow_no_period();
+    if (plan_.may_lack_period(input_)) lane.drive->allow_no_period();
     lane.values.resize(plan_.sweep.names().size());
     lanes_.push_back(std::move(lane));
   }
@@ -83,14 +83,14 @@ void PieceSolver::require_structure(Lane& lane, double point) {
   for (std::size_t i = 0; i < lane.values.size(); ++i)
     if (plan_.is_structural[i]) wanted.push_back(lane.values[i]);
   if (plan_.structure_follows_point) wanted.push_back(point);
-  if (structure_ && wanted == structure_values_) return;
+  if (model_ && wanted == structure_values_) return;
   solver_.reset();
   free_.reset();
   stuck_.reset();
-  structure_.reset();
-  structure_ = std::make_unique<system::AssembledModel>(
-      build_structure(input_.study, lane.drive->parameters_at(lane.values, point)));
-  solver_ = make_.response(structure_->system, plan_.request);
+  model_.reset();
+  model_ =
+      std::make_unique<SteadyModel>(build_steady_model(input_.study, lane.drive->parameters_at(lane.values, point)));
+  solver_ = make_.response(model_->system(), model_->request(plan_.observed, plan_.request));
   structure_values_ = std::move(wanted);
 }
 
@@ -109,15 +109,21 @@ void PieceSolver::take_line(Lane& lane, long line) {
 
 void PieceSolver::solve_linear(const RowPlace& place, const system::Excitation& excitation, PieceResult& result) {
   if (!free_) {
-    steady::SteadyRequest request = plan_.request;
+    steady::SteadyRequest request = model_->request(plan_.observed, plan_.request);
     request.rates = false;
     request.harmonics = {1};
-    free_ = make_.free(structure_->system, request);
-    stuck_ = make_.stuck(structure_->system, request);
+    free_ = make_.free(model_->system(), request);
+    stuck_ = make_.stuck(model_->system(), request);
   }
   free_->solve(excitation, steady::SteadyStart::unloaded, free_response_);
   stuck_->solve(excitation, steady::SteadyStart::unloaded, stuck_response_);
   tables_.linear.add(place, free_response_, stuck_response_, result.linear);
+}
+
+/// What lies between the samples is missed by less than a thousandth of the amplitude of the first orders.
+AboutRest::Excursion PieceSolver::excursion_of_last() const {
+  constexpr int samples = 64;
+  return model_->about->excursion(solver_->waveform(samples).position);
 }
 
 /// Loads whose frequencies have no common fundamental: the system is marched from its start until it settles.
@@ -130,16 +136,20 @@ void PieceSolver::march_without_period(Lane& lane, double point, steady::SteadyR
 }
 
 void PieceSolver::finish_point(const Lane& lane, long line, std::size_t step, const system::Excitation& excitation,
-                               const steady::SteadyResponse& response, PieceResult& result) {
+                               steady::SteadyResponse& response, PieceResult& result) {
   const RowPlace place = place_of(lane, step);
   // Both directions have the same limits.
   if (lane.has_limits && step < plan_.frequencies.size() && lane.drive->has_period())
     solve_linear(place, excitation, result);
+  const bool moves_far =
+      model_->about && response.amplitude.allFinite() && !model_->about->told(excursion_of_last()).empty();
+  if (model_->about) model_->about->place(plan_.observed, response);
   tables_.main.add(place, excitation.angular_frequency, response, result.main);
   SweepCounts& counts = result.counts;
   const double number = point_number(line, step);
   counts.of(point_status(response.status)).note(number);
   counts.iterations += response.iterations;
+  if (moves_far) counts.excursions.note(number);
   if (!lane.drive->negative_loads().empty()) counts.negative_loads.note(number);
   progress_.add(1);
 }
@@ -160,7 +170,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
       if (is_new_line || plan_.structure_follows_point) {
         require_structure(mine, point);
         if (is_new_line) forget();
-        mine.drive->take_line(mine.values, *structure_);
+        mine.drive->take_line(mine.values, model_->assembled);
         is_new_line = false;
       }
       mine.drive->take_point(point, excitation);
@@ -175,8 +185,11 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
       continue;
     }
     finish_point(mine, piece.first_line, step, excitation, response, result);
-    if (plan_.waveform_points > 0 && plan_.waveform_at[plan_.steps[step].frequency])
-      tables_.waveforms.add(place_of(mine, step), solver_->waveform(plan_.waveform_points), result.waveforms);
+    if (plan_.waveform_points > 0 && plan_.waveform_at[plan_.steps[step].frequency]) {
+      steady::Waveform waveform = solver_->waveform(plan_.waveform_points);
+      if (model_->about) model_->about->place(waveform);
+      tables_.waveforms.add(place_of(mine, step), waveform, result.waveforms);
+    }
   }
 }
 
@@ -191,7 +204,7 @@ bool PieceSolver::solve_lanes(const SweepPiece& piece, PieceResult& result) {
   try {
     require_structure(lanes_[0], point_value(piece.first_step));
     forget();
-    for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_line(lanes_[i].values, *structure_);
+    for (std::size_t i = 0; i < count; ++i) lanes_[i].drive->take_line(lanes_[i].values, model_->assembled);
     for (std::size_t step = piece.first_step; step < piece.first_step + piece.steps; ++step) {
       if (stop_.load(std::memory_order_relaxed)) {
         result.is_whole = false;
@@ -245,7 +258,7 @@ int PieceSolver::lanes() {
   } catch (const InvalidInput&) {
     return 1;
   }
-  return solver_->lanes();
+  return model_->about ? 1 : solver_->lanes();
 }
 
 /// The first lane with one point of a line.
@@ -253,7 +266,7 @@ PieceSolver::Lane& PieceSolver::take_point(long line, std::size_t step) {
   Lane& mine = lane(0);
   take_line(mine, line);
   require_structure(mine, point_value(step));
-  mine.drive->take_line(mine.values, *structure_);
+  mine.drive->take_line(mine.values, model_->assembled);
   mine.drive->take_point(point_value(step), excitations_[0]);
   return mine;
 }
@@ -274,6 +287,13 @@ Vector PieceSolver::drift(long line, std::size_t step) {
   solver_->forget();
   solver_->solve(excitations_[0], plan_.start, responses_[0]);
   return responses_[0].drift;
+}
+
+std::string PieceSolver::excursion(long line, std::size_t step) {
+  (void)take_point(line, step);
+  solver_->forget();
+  solver_->solve(excitations_[0], plan_.start, responses_[0]);
+  return model_->about ? model_->about->told(excursion_of_last()) : std::string();
 }
 
 std::vector<ParametricExcitation::NegativeLoad> PieceSolver::negative_loads(long line, std::size_t step) {

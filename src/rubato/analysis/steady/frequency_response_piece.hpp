@@ -60,6 +60,8 @@ class PieceSolver {
   std::string reason(long line, std::size_t step);
   /// The sliders with a negative load at a point.
   std::vector<ParametricExcitation::NegativeLoad> negative_loads(long line, std::size_t step);
+  /// How a mechanism leaves the small motions about its equilibrium at a point; empty where it does not.
+  std::string excursion(long line, std::size_t step);
   /// How far what is observed drifts in a period at a point; empty where it does not [o] [m].
   Vector drift(long line, std::size_t step);
 
@@ -79,8 +81,9 @@ class PieceSolver {
   void march_without_period(Lane& lane, double point, steady::SteadyResponse& response);
   void solve_linear(const RowPlace& place, const system::Excitation& excitation, PieceResult& result);
   void require_structure(Lane& lane, double point);
+  AboutRest::Excursion excursion_of_last() const;
   void finish_point(const Lane& lane, long line, std::size_t step, const system::Excitation& excitation,
-                    const steady::SteadyResponse& response, PieceResult& result);
+                    steady::SteadyResponse& response, PieceResult& result);
   RowPlace place_of(const Lane& lane, std::size_t step) const;
   double point_value(std::size_t step) const;
   double point_number(long line, std::size_t step) const;
@@ -96,7 +99,7 @@ class PieceSolver {
   std::vector<Lane> lanes_;
   std::vector<system::Excitation> excitations_;
   std::vector<steady::SteadyResponse> responses_;
-  std::unique_ptr<system::AssembledModel> structure_;
+  std::unique_ptr<SteadyModel> model_;
   std::vector<double> structure_values_;  ///< the structural parameters that it was built with
   std::unique_ptr<steady::SteadySolver> solver_, free_, stuck_;
   steady::SteadyResponse free_response_, stuck_response_;

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
 
 namespace rubato::analysis {
@@ -45,18 +47,20 @@ std::vector<double> frequencies_of(const Description& description, const numeric
   return values;
 }
 
-void plan_sweep(FrequencyResponsePlan& plan, const std::string& title) {
+/// @param reaches_model  whether what is assembled depends on a parameter
+void plan_sweep(FrequencyResponsePlan& plan, const std::function<bool(std::size_t)>& reaches_model,
+                const std::string& title) {
   const auto& dependence = plan.dependence;
   const auto taken = reserved_columns();
   for (std::size_t i = 0; i < plan.sweep.places().size(); ++i) {
     const std::size_t parameter = plan.sweep.places()[i];
     require_effect(dependence, parameter, {plan.sweep.names()[i], plan.sweep.where()[i]}, taken, "swept parameter",
                    title);
-    plan.is_structural.push_back(dependence.reaches(parameter, Role::structure));
+    plan.is_structural.push_back(reaches_model(parameter));
     plan.divides_lanes.push_back(plan.is_structural.back() || dependence.reaches(parameter, Role::frequency));
     plan.is_linear.push_back(plan.divides_lanes.back() || dependence.reaches(parameter, Role::load));
   }
-  plan.structure_follows_point = dependence.reaches(plan.excitation, Role::structure);
+  plan.structure_follows_point = reaches_model(plan.excitation);
 }
 
 void plan_memory(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
@@ -98,7 +102,9 @@ Route route_of(steady::SteadyRoute::Kind kind) {
 /// What is described, with the solver that is taken where none is named.
 Description with_route(Description description, const StudyInput& input) {
   const bool is_named = description.route_where.line > 0;
-  if (!is_named && description.route == Description::Route::periodic && input.structure().has_laws())
+  const bool has_laws = input.kind.structure() ? input.structure().has_laws()
+                                               : !input.study.model.laws.empty() || !input.study.model.sliders.empty();
+  if (!is_named && description.route == Description::Route::periodic && has_laws)
     description.route = refusal(Route::harmonic_balance, input.kind) ? Description::Route::time_marching
                                                                      : Description::Route::harmonic_balance;
   return description;
@@ -137,7 +143,8 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
 void plan_request(FrequencyResponsePlan& plan, const Description& description, const StudyInput& input,
                   const std::string& title, const Location& where) {
   plan.observed = observed_or_all(description.observe, {input.kind.system(), input.kind.supports()});
-  for (const auto& observed : plan.observed) plan.request.observed.push_back({observed.first, observed.second});
+  for (const auto& observed : plan.observed)
+    if (!input.kind.is_constrained()) plan.request.observed.push_back({observed.first, observed.second, {}});
   plan.request.harmonics = {1};
   for (const auto& quantity : description.harmonics) {
     const long order = whole_number(quantity, 1, input.parameters, title + "harmonics", where);
@@ -170,11 +177,43 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
   }
 }
 
+/// Small motions of a mechanism are about an equilibrium, and a structure has no other place.
+void require_about(const Description& description, const StudyInput& input, const Location& where,
+                   const std::string& title) {
+  if (!input.kind.is_constrained()) {
+    if (description.about_equilibrium)
+      throw InvalidInput(*description.about_equilibrium,
+                         title +
+                             "about = \"static\" is of mechanisms; a structure answers as it is, and its static loads "
+                             "are among those of the response: leave it out");
+    return;
+  }
+  if (!description.about_equilibrium)
+    throw InvalidInput(where, title +
+                                  "a mechanism (bodies, joints, geometrically exact beams) answers harmonic loads by "
+                                  "small motions about its static equilibrium: add about = \"static\", or run a "
+                                  "transient");
+  refuse_beyond_small_motions(input, where, title);
+}
+
+/// Whether what is assembled depends on a parameter: of a mechanism all that its equilibrium does.
+std::function<bool(std::size_t)> model_dependence(const StudyInput& input, const FrequencyResponsePlan& plan) {
+  if (!input.kind.is_constrained())
+    return [&](std::size_t parameter) { return plan.dependence.reaches(parameter, Role::structure); };
+  auto still = std::make_shared<const model::StudyDescription>(without_harmonic_loads(input.study, input.parameters));
+  const StudyInput at_rest{*still, input.overrides, input.parameters, input.kind};
+  std::vector<std::size_t> varied = plan.sweep.places();
+  varied.push_back(plan.excitation);
+  return [still, dependence = dependence_of(at_rest, varied)](std::size_t parameter) {
+    return dependence.reaches_model(parameter);
+  };
+}
+
 /// One of the first and last points can be made at least; which others can is judged as they are reached.
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const std::string& title,
                   const Location& where) {
   ParametricExcitation at(input, plan.dependence, plan.sweep.places(), plan.excitation);
-  if (plan.route.kind == steady::SteadyRoute::Kind::time_marching) at.allow_no_period();
+  if (plan.may_lack_period(input)) at.allow_no_period();
   std::vector<double> values(plan.sweep.names().size());
   Possibility possibility(title, where);
   for (const long line : {0L, plan.sweep.lines() - 1})
@@ -182,14 +221,16 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const st
       possibility.attempt([&] {
         plan.sweep.values(line, values);
         const double point = plan.excitation_factor * frequency;
-        const system::AssembledModel structure = build_structure(input.study, at.parameters_at(values, point));
+        const auto model =
+            std::make_shared<const SteadyModel>(build_steady_model(input.study, at.parameters_at(values, point)));
         system::Excitation excitation;
-        at.take_line(values, structure);
+        at.take_line(values, model->assembled);
         at.take_point(point, excitation);
         if (std::abs(excitation.angular_frequency - frequency) > 1e-9 * frequency) plan.has_other_fundamental = true;
         if (at.has_period() && !excitation.harmonics.empty())
           plan.route.linear.highest =
               std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
+        if (model->about && !plan.about) plan.about = model;
       });
   possibility.require();
 }
@@ -203,8 +244,9 @@ std::size_t FrequencyResponsePlan::steps_a_piece() const {
 
 FrequencyResponsePlan plan_frequency_response(const std::string& name, const Location& where,
                                               const Description& described, const StudyInput& input) {
-  const Description description = with_route(described, input);
   const std::string title = "analysis \"" + name + "\": ";
+  require_about(described, input, where, title);
+  const Description description = with_route(described, input);
   require_harmonic_loads(input, where, title);
   Sweep sweep(description.sweep, place(description.sweep_where, where), input, title);
   const std::size_t excitation = excitation_parameter({description.excitation, description.excitation_where},
@@ -214,7 +256,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   FrequencyResponsePlan plan{frequencies_of(description, input.parameters, title, where), excitation, 1.0,
                              std::move(sweep), dependence_of(input, std::move(varied))};
   if (plan.dependence.is_in_hertz(excitation)) plan.excitation_factor = 0.5 / std::numbers::pi;
-  plan_sweep(plan, title);
+  plan_sweep(plan, model_dependence(input, plan), title);
   plan_memory(plan, description, input, title, where);
   plan_route(plan, description, input, title, where);
   plan_request(plan, description, input, title, where);
@@ -223,6 +265,11 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the list of frequencies"}};
   for (const std::size_t place : plan.sweep.places()) given.emplace_back(place, "the sweep");
   plan.warnings = warn_of_settings(input, given);
+  if (plan.about) {
+    plan.request = plan.about->request(plan.observed, plan.request);
+    const auto& told = plan.about->about->warnings();
+    plan.warnings.insert(plan.warnings.end(), told.begin(), told.end());
+  }
   plan.route.linear.points = static_cast<Index>(plan.frequencies.size());
   return plan;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/steady/steady_route.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,8 +43,16 @@ struct FrequencyResponsePlan {
   std::vector<bool> is_linear = {};      ///< whether it changes the linear limits
   std::vector<bool> divides_lanes = {};  ///< whether lines of different values cannot be solved side by side
 
+  std::shared_ptr<const SteadyModel> about = nullptr;  ///< of a mechanism: at the values of the study, its first point
+
   std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
 
+  /// What is solved, at the values of the study.
+  const auto& system(const StudyInput& input) const { return about ? about->system() : input.structure(); }
+  /// Whether loads without a common period are marched: what settles is that of a structure.
+  bool may_lack_period(const StudyInput& input) const {
+    return route.kind == steady::SteadyRoute::Kind::time_marching && !input.kind.is_constrained();
+  }
   double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(steps.size()); }
   /// How many points are solved one after another: all of a line where each depends on the one before, else a number
   /// that bounds what is kept in memory. What is solved apart begins afresh, whatever the number of threads.

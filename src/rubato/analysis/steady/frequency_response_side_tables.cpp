@@ -43,7 +43,7 @@ WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePla
               {},
               {{"type", "frequency_response_waveforms"}, {"points", std::to_string(plan.waveform_points)}}},
       observed_(plan.observed),
-      sliders_(results::SliderColumns(input.structure()).order()),
+      sliders_(results::SliderColumns(plan.system(input)).order()),
       has_direction_(plan.has_both_directions) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, {}, blocks);
@@ -51,7 +51,7 @@ WaveformTable::WaveformTable(const std::string& name, const FrequencyResponsePla
   blocks.push_back(angular_frequency());
   blocks.push_back(scalar("time", "s", "time since the begin of a period"));
   add_blocks(plan.observed, {"position", "m", "displacement"}, {"angle", "rad", "rotation"}, blocks);
-  const results::SliderColumns sliders(input.structure());
+  const results::SliderColumns sliders(plan.system(input));
   sliders.add({"force", "N", "slider force; -force acts on the first coordinate"},
               {"moment", "N m", "slider moment; -moment acts on the first coordinate"}, blocks);
   sliders.add({"displacement", "m", "relative displacement of its ends"},

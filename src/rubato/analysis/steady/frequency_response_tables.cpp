@@ -116,7 +116,7 @@ std::vector<std::string> reserved_columns() {
 
 ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePlan& plan, const StudyInput& input)
     : layout_{name, "", "point", {}, attributes_of(plan, input)},
-      sliders_(results::SliderColumns(input.structure()).order()),
+      sliders_(results::SliderColumns(plan.system(input)).order()),
       has_direction_(plan.has_both_directions),
       has_fundamental_(plan.has_other_fundamental) {
   auto& blocks = layout_.blocks;
@@ -144,17 +144,17 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
   observe({"mean", "m", "mean over a period"}, {"angle_mean", "rad", "mean over a period"});
   observe({"rms", "m", "root of the mean square over a period"},
           {"angle_rms", "rad", "root of the mean square over a period"});
-  const results::SliderColumns sliders(input.structure());
+  const results::SliderColumns sliders(plan.system(input));
   sliders.add({"dissipated", "J", "friction work over a period"}, blocks);
   sliders.add({"slip_share", "1", "share of the period in which it slips"}, blocks);
   sliders.add({"offset", "N", "force at rest of a slider that never slips, fc - kT u"},
               {"moment_offset", "N m", "moment at rest of a slider that never slips, fc - kT u"}, blocks);
-  const results::LawColumns laws(input.structure(), false);
+  const results::LawColumns laws(plan.system(input), false);
   laws.add({"dissipated", "J", "by a law over a period"}, blocks);
   laws_ = laws.order();
-  const results::BlockColumns contacts(input.structure(), false);
+  const results::BlockColumns contacts(plan.system(input), false);
   contacts.add({"dissipated", "J", "by a contact over a period"}, blocks);
-  for (Index b = 0; b < input.structure().block_count(); ++b) laws_.push_back(input.structure().law_count() + b);
+  for (Index b = 0; b < plan.system(input).block_count(); ++b) laws_.push_back(plan.system(input).law_count() + b);
   blocks.push_back(scalar("viscous_work", "J", "dissipated by the dampers over a period"));
   blocks.push_back(scalar("input_work", "J", "work of the loads over a period"));
   blocks.push_back(scalar("transitions", "1", "from stick to slip and back, in a period"));

@@ -33,7 +33,7 @@ ParametricExcitation::ParametricExcitation(const StudyInput& input, const Parame
   }
   for (const auto& law : model::load_laws(input.study.model)) laws_.push_back(law_of(law));
   for (const auto& slider : input.study.model.sliders)
-    if (!slider.is_law())
+    if (!slider.is_law() && !input.kind.is_constrained())  // those of a mechanism are laws
       limits_.push_back({value_of(slider.friction_coefficient), value_of(slider.normal_load),
                          fmt::format("slider \"{}\"", slider.name)});
 }

@@ -47,11 +47,12 @@ double StatusCounts::total() const {
 void StatusCounts::add(const StatusCounts& other) {
   for (std::size_t i = 0; i < by_status.size(); ++i) by_status[i].add(other.by_status[i]);
   negative_loads.add(other.negative_loads);
+  excursions.add(other.excursions);
 }
 
 void StatusCounts::pack(std::vector<double>& values) const {
   for (const Tally& tally : by_status) values.insert(values.end(), {tally.count, tally.first});
-  values.insert(values.end(), {negative_loads.count, negative_loads.first});
+  for (const Tally* tally : {&negative_loads, &excursions}) values.insert(values.end(), {tally->count, tally->first});
 }
 
 void StatusCounts::unpack(PackedNumbers& values) {
@@ -61,6 +62,7 @@ void StatusCounts::unpack(PackedNumbers& values) {
   };
   for (Tally& tally : by_status) read(tally);
   read(negative_loads);
+  read(excursions);
 }
 
 void StatusCounts::describe(std::vector<std::pair<std::string, std::string>>& statistics) const {

@@ -30,6 +30,7 @@ struct Tally {
 struct StatusCounts {
   std::array<Tally, point_statuses> by_status{};
   Tally negative_loads;  ///< places with a negative normal load
+  Tally excursions;      ///< places where a mechanism leaves the small motions about its equilibrium
 
   const Tally& of(PointStatus status) const { return by_status[static_cast<std::size_t>(status)]; }
   Tally& of(PointStatus status) { return by_status[static_cast<std::size_t>(status)]; }

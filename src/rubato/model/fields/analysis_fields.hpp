@@ -273,6 +273,12 @@ void fields(auto& visit, FrequencyResponseDescription& task) {
              {{"up", Task::Direction::up}, {"down", Task::Direction::down}, {"both", Task::Direction::both}},
              {.says = "of the frequency, with start = \"previous\"", .unless = "up"});
   visit.where(task.direction_where, "direction");
+  bool is_static = false;
+  visit.word(
+      "about", is_static, {{"static", true}},
+      {.says = "of a mechanism: small motions about its static equilibrium, where the harmonic loads are left out",
+       .unless = "a structure answers as it is"});
+  if (is_static) visit.where(task.about_equilibrium.emplace(), "about");
   observe_field(visit, task.observe);
   visit.quantities(
       "harmonics", task.harmonics, {},

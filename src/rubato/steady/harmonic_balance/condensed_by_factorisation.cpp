@@ -136,11 +136,9 @@ class SparseFactorisation final : public CondensedStructure::Route {
     const Index n = columns_.system.size(), driven = columns_.driven();
     Matrix all = Matrix::Zero(n, columns_.count());
     all.leftCols(driven) << columns_.sliders, columns_.loads;
-    for (std::size_t i = 0; i < columns_.observed.size(); ++i) {
-      const auto& [first, second] = columns_.observed[i];
-      if (first != ground) all(first, driven + static_cast<Index>(i)) += 1.0;
-      if (second != ground) all(second, driven + static_cast<Index>(i)) -= 1.0;
-    }
+    for (std::size_t i = 0; i < columns_.observed.size(); ++i)
+      columns_.observed[i].for_each(
+          [&](Index coordinate, double weight) { all(coordinate, driven + static_cast<Index>(i)) += weight; });
     sparse_ = all.sparseView();
     // The rows of a load that is spread over the structure stay where they are.
     const int spread = std::max(most_own_rows, static_cast<int>(n) / 100);

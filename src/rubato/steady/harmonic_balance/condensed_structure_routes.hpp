@@ -27,8 +27,7 @@ struct CondensedStructure::Columns {
     for (std::size_t i = 0; i < observed.size(); ++i) {
       auto row = out.row(driven() + static_cast<Index>(i));
       row.setZero();
-      if (observed[i].first != ground) row += x.row(observed[i].first);
-      if (observed[i].second != ground) row -= x.row(observed[i].second);
+      observed[i].for_each([&](Index coordinate, double weight) { row += weight * x.row(coordinate); });
     }
     return out;
   }

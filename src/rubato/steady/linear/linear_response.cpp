@@ -14,11 +14,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-template <class V>
-auto difference(const SteadyRequest::Observed& observed, const V& x) {
-  return observed.second == ground ? x[observed.first] : x[observed.first] - x[observed.second];
-}
-
 constexpr Index least_points = 20;
 constexpr Index direct_size = 3000;
 constexpr double direct_fill =
@@ -100,7 +95,7 @@ double LinearResponse::solve_order(int order, const ComplexVector& force, Comple
 }
 
 double LinearResponse::Doubt::of(const SteadyRequest::Observed& observed) const {
-  return uncertainty.size() > 0 ? std::abs(difference(observed, uncertainty)) : 0.0;
+  return uncertainty.size() > 0 ? std::abs(observed.of(uncertainty)) : 0.0;
 }
 
 bool LinearResponse::Doubt::is_infinite(const SteadyRequest::Observed& observed, double value) const {
@@ -126,13 +121,13 @@ void LinearResponse::observe(const system::Excitation& excitation, SteadyRespons
     std::vector<Complex> x, v, a;
     double squares = 0.0, error = 0.0;
     bool is_bounded = true;
-    response.mean[o] = difference(observed, mean_);
+    response.mean[o] = observed.of(mean_);
     if (mean_doubt_.is_infinite(observed, std::abs(response.mean[o]))) {
       response.mean[o] = infinity;
       is_bounded = false;
     }
     for (std::size_t j = 0; j < harmonics_.size(); ++j) {
-      const Complex c = difference(observed, harmonics_[j].amplitude);
+      const Complex c = observed.of(harmonics_[j].amplitude);
       const Complex rate(0.0, orders[j] * omega_);
       const bool is_resonant = doubts_[j].is_infinite(observed, std::abs(c));
       is_bounded = is_bounded && !is_resonant;

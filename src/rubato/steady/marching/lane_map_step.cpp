@@ -48,7 +48,7 @@ LaneMap::LaneMap(const integrate::Method& method, const system::LocallyNonlinear
   observation_.observed = static_cast<int>(request.observed.size());
   observation_.work_unit = unit_mass_;
   for (const auto& observed : request.observed)
-    for (Index k = 0; k < n_; ++k) observation_.combination.push_back(observe(observed, modes_.col(k)));
+    for (Index k = 0; k < n_; ++k) observation_.combination.push_back(observed.of(modes_.col(k)));
   for (Index k = 0; k < n_; ++k) {
     for (Index l = 0; l < n_; ++l) {
       observation_.stiffness.push_back(stiffness_(k, l));

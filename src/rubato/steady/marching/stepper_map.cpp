@@ -116,8 +116,8 @@ class StepperMap final : public PeriodMap {
   double observed_size(const LaneArray& differences, Index lane) const override {
     double size = 0.0;
     for (const auto& observed : request_.observed)
-      size = std::max(size, std::hypot(observe(observed, differences.col(lane).segment(0, n_)),
-                                       observe(observed, differences.col(lane).segment(n_, n_))));
+      size = std::max(size, std::hypot(observed.of(differences.col(lane).segment(0, n_)),
+                                       observed.of(differences.col(lane).segment(n_, n_))));
     return size;
   }
 
@@ -222,9 +222,9 @@ void RecordWriter::write(const system::State& state, PeriodRecord& record, Index
   if (has_accelerations) equilibrium_(state, acceleration_);
   for (std::size_t i = 0; i < request_.observed.size(); ++i) {
     const auto row = static_cast<Index>(i);
-    record.position(row, column) = observe(request_.observed[i], state.q);
-    record.velocity(row, column) = observe(request_.observed[i], state.v);
-    if (has_accelerations) record.acceleration(row, column) = observe(request_.observed[i], acceleration_);
+    record.position(row, column) = request_.observed[i].of(state.q);
+    record.velocity(row, column) = request_.observed[i].of(state.v);
+    if (has_accelerations) record.acceleration(row, column) = request_.observed[i].of(acceleration_);
   }
   record.slider_force.col(column) = state.slider_force.head(system_.slider_count());
   for (Index i = 0; i < system_.slider_count(); ++i)

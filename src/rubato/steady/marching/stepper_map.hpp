@@ -16,13 +16,6 @@ std::unique_ptr<PeriodMap> make_stepper_map(const integrate::Method& method, con
 /// in phase and in quadrature; static ones of zero frequency).
 system::LocallyNonlinear with_excitation(const system::LocallyNonlinear& system, const system::Excitation& excitation);
 
-/// The value of an observed quantity in the motion of all coordinates.
-template <class Motion>
-double observe(const SteadyRequest::Observed& observed, const Motion& motion) {
-  return (observed.first == ground ? 0.0 : motion[observed.first]) -
-         (observed.second == ground ? 0.0 : motion[observed.second]);
-}
-
 /// Writes samples of a march into a record, and adds up the works of its steps:
 ///
 ///   dampers (C v0 + C v1)/2 . dq,   loads (f0 + f1)/2 . dq,   laws by their own formula

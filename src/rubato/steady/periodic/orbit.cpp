@@ -95,6 +95,13 @@ std::span<double> Orbit::difference(const Piece& piece, Index first, Index secon
   return storage.first(terms);
 }
 
+std::span<double> Orbit::observe(const Piece& piece, const SteadyRequest::Observed& what,
+                                 std::span<double> storage) const {
+  const auto terms = static_cast<std::size_t>(piece.terms);
+  for (std::size_t k = 0; k < terms; ++k) storage[k] = what.of(piece.q.col(static_cast<Index>(k)));
+  return storage.first(terms);
+}
+
 void Orbit::displacement_range(Index slider, double& low, double& high) const {
   integrate::ValueRange range;
   const auto& element = system_.sliders()[static_cast<std::size_t>(slider)];
@@ -123,7 +130,7 @@ void Orbit::measure_ranges(const SteadyRequest& request, bool half, SteadyRespon
     const auto& what = request.observed[static_cast<std::size_t>(o)];
     std::array<integrate::ValueRange, 3> ranges;  // of the position, velocity and acceleration
     for (std::size_t i = 0; i < count_; ++i)
-      integrate::include_ranges(difference(pieces_[i], what.first, what.second, storage), pieces_[i].length,
+      integrate::include_ranges(observe(pieces_[i], what, storage), pieces_[i].length,
                                 std::span(ranges).first(request.rates ? 3 : 1));
     response.amplitude[o] = half_peak_to_peak(ranges[0], half);
     if (!request.rates) continue;
@@ -200,8 +207,8 @@ void Orbit::measure_integrals(const system::Excitation& excitation, const Steady
 
       for (Index o = 0; o < observed; ++o) {
         const auto& what = request.observed[static_cast<std::size_t>(o)];
-        Nodes x = positions_.col(what.first);
-        if (what.second != ground) x -= positions_.col(what.second);
+        Nodes x = Nodes::Zero();
+        what.for_each([&](Index coordinate, double share) { x += share * positions_.col(coordinate); });
         response.mean[o] += width * (weight * x).sum();
         response.rms[o] += width * (weight * x.square()).sum();
         for (Index h = 0; h < orders; ++h) {

@@ -45,6 +45,7 @@ class Orbit {
   };
   /// Coefficients of x_first - x_second in a piece, in `storage`.
   std::span<double> difference(const Piece& piece, Index first, Index second, std::span<double> storage) const;
+  std::span<double> observe(const Piece& piece, const SteadyRequest::Observed& what, std::span<double> storage) const;
   void measure_ranges(const SteadyRequest& request, bool half, SteadyResponse& response) const;
   void measure_integrals(const system::Excitation& excitation, const SteadyRequest& request, bool half,
                          SteadyResponse& response) const;

@@ -109,8 +109,7 @@ void PeriodicSolver::measure(const system::Excitation& excitation, SteadyRespons
   response.input_work += load.dot(drift_);
   response.drift.resize(response.mean.size());
   for (Index o = 0; o < response.drift.size(); ++o) {
-    const auto& what = request_.observed[static_cast<std::size_t>(o)];
-    response.drift[o] = drift_[what.first] - (what.second == ground ? 0.0 : drift_[what.second]);
+    response.drift[o] = request_.observed[static_cast<std::size_t>(o)].of(drift_);
     if (response.drift[o] != 0.0) response.mean[o] = response.rms[o] = std::numeric_limits<double>::quiet_NaN();
   }
 }
@@ -146,8 +145,7 @@ void PeriodicSolver::take_start(const system::Excitation& excitation, SteadyStar
 
 double PeriodicSolver::observed_size(const Vector& y) const {
   double size = 0.0;
-  for (const auto& what : request_.observed)
-    size = std::max(size, std::abs(y[what.first] - (what.second == ground ? 0.0 : y[what.second])));
+  for (const auto& what : request_.observed) size = std::max(size, std::abs(what.of(y)));
   return size;
 }
 

@@ -1,0 +1,118 @@
+#include <rubato/integrate/mechanism/law_about_rest.hpp>
+#include <rubato/model/laws/law_slopes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace rubato::integrate {
+namespace {
+
+using model::LawAnswer;
+using model::LawPoint;
+
+/// A memory with that of the rest added; small ones need no storage of their own.
+class Memory {
+ public:
+  Memory(const Vector& rest, const double* beside) {
+    const auto size = static_cast<std::size_t>(rest.size());
+    if (size > few_.size()) many_.resize(size);
+    values_ = size > few_.size() ? many_.data() : few_.data();
+    for (std::size_t i = 0; i < size; ++i) values_[i] = rest[static_cast<Index>(i)] + (beside ? beside[i] : 0.0);
+  }
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+  double* data() { return values_; }
+  /// Writes what is beside the rest.
+  void leave(const Vector& rest, double* beside) const {
+    for (Index i = 0; i < rest.size(); ++i) beside[i] = values_[i] - rest[i];
+  }
+
+ private:
+  std::array<double, 16> few_;
+  std::vector<double> many_;
+  double* values_ = nullptr;
+};
+
+class LawAboutRest : public model::Law {
+ public:
+  LawAboutRest(std::shared_ptr<const model::Law> law, double u, Vector memory, double force)
+      : law_(std::move(law)), u_(u), memory_(std::move(memory)), force_(force) {}
+
+  Index memory_size() const override { return memory_.size(); }
+  LawAnswer advance(const LawPoint& from, const double* memory, const LawPoint& to, double* next) const override {
+    Memory before(memory_, memory), after(memory_, nullptr);
+    const LawAnswer answer = law_->advance(at_place(from), before.data(), at_place(to), after.data());
+    after.leave(memory_, next);
+    return beside(answer);
+  }
+  LawAnswer at(const LawPoint& point, const double* memory) const override {
+    Memory there(memory_, memory);
+    return beside(law_->at(at_place(point), there.data()));
+  }
+  double stored_energy(double u, const double* memory) const override {
+    Memory there(memory_, memory);
+    return law_->stored_energy(u_ + u, there.data());
+  }
+  double dissipated(const LawPoint& from, const double* memory, const LawPoint& to, const double* next) const override {
+    Memory before(memory_, memory), after(memory_, next);
+    return law_->dissipated(at_place(from), before.data(), at_place(to), after.data());
+  }
+  double largest_stiffness() const override { return law_->largest_stiffness(); }
+  bool is_exact_between_guards() const override { return law_->is_exact_between_guards(); }
+  double guard(const LawPoint& from, const double* memory, const LawPoint& to, double near) const override {
+    Memory before(memory_, memory);
+    return law_->guard(at_place(from), before.data(), at_place(to), near);
+  }
+  bool takes_normal() const override { return law_->takes_normal(); }
+  double sticking_stiffness() const override { return law_->sticking_stiffness(); }
+  Contact contact(const LawPoint& point, const double* memory, double near) const override {
+    Memory there(memory_, memory);
+    return law_->contact(at_place(point), there.data(), near);
+  }
+  bool depends_on_rate() const override { return law_->depends_on_rate(); }
+  bool depends_on_time() const override { return law_->depends_on_time(); }
+  const numerics::Formula* formula_of_time() const override { return law_->formula_of_time(); }
+  std::vector<double> breakpoints(double from, double to) const override { return law_->breakpoints(from, to); }
+
+ protected:
+  LawPoint at_place(LawPoint point) const {
+    point.u += u_;
+    return point;
+  }
+  LawAnswer beside(LawAnswer answer) const {
+    answer.force -= force_;
+    return answer;
+  }
+
+  std::shared_ptr<const model::Law> law_;
+  double u_;
+  Vector memory_;
+  double force_;
+};
+
+/// Of a law that knows the slopes of its steps: they are the same.
+class SlopedLawAboutRest final : public LawAboutRest, public model::LawSlopes {
+ public:
+  using LawAboutRest::LawAboutRest;
+  void slopes(const LawPoint& from, const double* memory, const LawPoint& to, double* slopes) const override {
+    Memory before(memory_, memory);
+    dynamic_cast<const model::LawSlopes&>(*law_).slopes(at_place(from), before.data(), at_place(to), slopes);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const model::Law> law_about_rest(std::shared_ptr<const model::Law> law, double u, const double* memory,
+                                                 double normal) {
+  Vector rest(law->memory_size());
+  std::copy(memory, memory + rest.size(), rest.data());
+  const double force = law->at({u, 0.0, 0.0, model::Side::right, normal}, rest.data()).force;
+  if (u == 0.0 && force == 0.0 && (rest.array() == 0.0).all()) return law;
+  if (dynamic_cast<const model::LawSlopes*>(law.get()))
+    return std::make_shared<SlopedLawAboutRest>(std::move(law), u, std::move(rest), force);
+  return std::make_shared<LawAboutRest>(std::move(law), u, std::move(rest), force);
+}
+
+}  // namespace rubato::integrate

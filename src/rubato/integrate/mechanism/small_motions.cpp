@@ -1,0 +1,170 @@
+#include <rubato/core/error.hpp>
+#include <rubato/integrate/mechanism/law_about_rest.hpp>
+#include <rubato/integrate/mechanism/motions_left.hpp>
+#include <rubato/integrate/mechanism/small_motions.hpp>
+#include <rubato/numerics/rotations.hpp>
+#include <rubato/system/mechanism_equations.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rubato::integrate {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// ds/dz of a coordinate s of a mechanism [r].
+template <class Coordinate>
+Vector share_of(const Coordinate& s, const Vector& q, const Matrix& basis) {
+  const std::vector<Index> places = s.places();
+  Vector slope(static_cast<Index>(places.size())), share = Vector::Zero(basis.cols());
+  s.slope(q.data(), slope.data());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i] != ground) share += slope[static_cast<Index>(i)] * basis.row(places[i]).transpose();
+  return share;
+}
+
+/// Takes slope (ds/dz)^T (ds/dz) from a matrix. What the difference leaves of an entry by round-off is nothing: a
+/// motion that laws alone hold must not seem to have a stiffness.
+void take_slope(double slope, const Vector& share, const Matrix& round_off, Matrix& matrix) {
+  const Matrix taken = slope * share * share.transpose();
+  matrix -= taken;
+  for (Index i = 0; i < matrix.size(); ++i)
+    if (std::abs(matrix.data()[i]) <= round_off.data()[i] + 8.0 * eps * std::abs(taken.data()[i]))
+      matrix.data()[i] = 0.0;
+}
+
+void take_laws(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
+               SmallMotions& motions) {
+  const Matrix of_stiffness = eps * left.terms, of_damping = 8.0 * eps * left.damping.cwiseAbs();
+  for (const model::MechanismLaw& law : mechanism.model().laws) {
+    const double u = std::visit([&](const auto& of) { return of.value(rest.q.data()); }, law.u);
+    const Vector share = std::visit([&](const auto& of) { return share_of(of, rest.q, left.basis); }, law.u);
+    const double* const memory = rest.memory.data() + law.memory;
+    const double normal = law.normal.value;
+    // The law acts by itself: its slopes leave K and C, and what its force makes of the curvature of u stays.
+    const model::LawAnswer slopes = law.law->at({u, 0.0, rest.t, model::Side::right, normal}, memory);
+    if (!std::isfinite(slopes.by_u) || !std::isfinite(slopes.by_rate))
+      throw InvalidInput(
+          fmt::format("the slope of the {} \"{}\" is not finite at the equilibrium: no small motion "
+                      "about it is linear; give the law a finite slope there",
+                      law.kind, law.name));
+    if (slopes.by_u != 0.0) take_slope(slopes.by_u, share, of_stiffness, left.stiffness);
+    if (slopes.by_rate != 0.0) take_slope(slopes.by_rate, share, of_damping, left.damping);
+    motions.laws.push_back({u, slopes.force});
+    model::LawBetween between;
+    between.name = law.name;
+    between.kind = law.kind;
+    between.law = law_about_rest(law.law, u, memory, normal);
+    between.normal.value = normal;
+    for (Index i = 0; i < share.size(); ++i)
+      if (share[i] != 0.0) between.shares.push_back({i, share[i]});
+    motions.parts.laws.push_back(std::move(between));
+  }
+}
+
+void take_locks(const system::Mechanism& mechanism, const system::State& rest, const Matrix& basis,
+                SmallMotions& motions) {
+  const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i) {
+    const model::Lock& lock = locks[i];
+    const bool is_held = rest.phase[i] != model::lock_open;
+    if (is_held && lock.is_latch) continue;
+    if (is_held && lock.is_rigid()) {
+      motions.rigid_stops.push_back(lock.name);
+      continue;
+    }
+    SmallMotions::Watched watched;
+    watched.name = lock.name;
+    watched.is_held = is_held;
+    watched.is_angle = lock.s.is_angle();
+    watched.share = share_of(lock.s, rest.q, basis);
+    watched.sign = is_held ? -lock.sign : lock.sign;
+    watched.room = std::max(0.0, watched.sign * (lock.at - lock.s.value(rest.q.data())));
+    motions.locks.push_back(std::move(watched));
+  }
+}
+
+/// What results show of small motions: translations and angles of the plane are the tangent coordinates themselves, of
+/// turns in space the rotation vector moves by T^-1 of the turn about the axes of the node.
+void take_coordinates(const system::Mechanism& mechanism, const system::State& rest, SmallMotions& motions) {
+  mechanism.coordinate_values(rest.q, motions.place);
+  motions.shares = motions.basis;
+  if (mechanism.model().dimension != 3) return;
+  for (const model::MechanismNode& node : mechanism.model().nodes) {
+    std::array<Index, 3> place{node.place[3], node.place[4], node.place[5]};
+    if (place == std::array<Index, 3>{ground, ground, ground}) continue;
+    numerics::Vector3 vector = numerics::Vector3::Zero();
+    Matrix turn = Matrix::Zero(3, motions.basis.cols());
+    for (Index axis = 0; axis < 3; ++axis) {
+      const Index at = place[static_cast<std::size_t>(axis)];
+      if (at == ground) continue;
+      vector[axis] = motions.place[at];
+      turn.row(axis) = motions.basis.row(at);
+    }
+    const Matrix moved = numerics::inverse_tangent_of(vector) * turn;
+    for (Index axis = 0; axis < 3; ++axis)
+      if (const Index at = place[static_cast<std::size_t>(axis)]; at != ground)
+        motions.shares.row(at) = moved.row(axis);
+  }
+}
+
+/// The largest entry of the skew part of a matrix that is more than round-off, over the size of the matrix.
+double skew_beyond(const Matrix& matrix, const Matrix& round_off) {
+  const Matrix skew = 0.5 * (matrix - matrix.transpose()).cwiseAbs();
+  double most = 0.0;
+  for (Index i = 0; i < skew.size(); ++i)
+    if (skew.data()[i] > round_off.data()[i]) most = std::max(most, skew.data()[i]);
+  return most > 0.0 ? most / std::max(matrix.cwiseAbs().maxCoeff(), 1e-300) : 0.0;
+}
+
+/// What is left of equilibrium, in z [r]: the stiffness of turns in space is skew by it.
+double left_over(system::MechanismEquations& equations, const system::State& rest, const Matrix& basis) {
+  Vector force(equations.mechanism().size()), gap(equations.mechanism().constraint_count());
+  equations.go_to(rest, model::Side::right);
+  equations.residual(force, gap);
+  equations.add_constraint_force(rest.multiplier, 1.0, force);
+  return (basis.cwiseAbs().transpose() * force.cwiseAbs()).maxCoeff() * basis.cwiseAbs().maxCoeff();
+}
+
+SparseMatrix even(const Matrix& matrix) {
+  return SparseMatrix((0.5 * (matrix + matrix.transpose())).sparseView(0.0, 0.0));
+}
+
+}  // namespace
+
+SmallMotions small_motions(system::MechanismEquations& equations, const system::State& rest) {
+  const system::Mechanism& mechanism = equations.mechanism();
+  MotionsLeft left = motions_left(equations, rest);
+  SmallMotions motions;
+  motions.basis = left.basis;
+  const Index r = left.freedoms();
+  if (r == 0) return motions;
+  const Matrix of_rest = Matrix::Constant(r, r, 4.0 * left_over(equations, rest, left.basis));
+  motions.skew = skew_beyond(left.stiffness, 16.0 * eps * left.terms + left.noise + of_rest);
+  take_laws(mechanism, rest, left, motions);
+  take_locks(mechanism, rest, left.basis, motions);
+  take_coordinates(mechanism, rest, motions);
+  motions.parts.mass = even(left.mass);
+  motions.parts.damping = even(left.damping);
+  motions.parts.stiffness = even(left.stiffness);
+  motions.parts.reference = mechanism.reference();
+  for (Index i = 0; i < r; ++i) motions.parts.coordinates.push_back(fmt::format("motion {} of the joints", i + 1));
+  return motions;
+}
+
+system::AssembledModel under_loads(SmallMotions& motions, std::vector<system::ModelLoad> loads) {
+  std::vector<system::LoadTerm> terms;
+  for (const system::ModelLoad& load : loads) terms.push_back(load.term);
+  system::LocallyNonlinear::Parts parts = std::move(motions.parts);
+  motions.parts = {};
+  parts.loads = system::Loads(std::move(terms));
+  return {system::LocallyNonlinear(std::move(parts)), std::move(loads)};
+}
+
+}  // namespace rubato::integrate
