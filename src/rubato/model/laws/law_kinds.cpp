@@ -7,10 +7,13 @@ namespace rubato::model {
 
 // Each in its file, bouc_wen.cpp and so on.
 LawKind bouc_wen();
+LawKind cable();
+LawKind dahl();
 LawKind nonlinear_spring();
+LawKind smooth_friction();
 
 std::span<const LawKind> law_kinds() {
-  static const std::vector<LawKind> all{bouc_wen(), nonlinear_spring()};
+  static const std::vector all{bouc_wen(), cable(), dahl(), nonlinear_spring(), smooth_friction()};
   return all;
 }
 
