@@ -141,7 +141,7 @@ class Marcher {
     if (!has_tried(length)) return;
     bool is_event = false;
     if (plan_.locate_events && !has_looked_for_events(length, is_event)) return;
-    const double error = estimator_.error(*from_, *to_, length.step);
+    const double error = std::max(estimator_.error(*from_, *to_, length.step), error_of_laws());
     report_.solves += estimator_.solves_a_try();
     const Decision decision = decide(plan_.controller, {length.step, error, estimator_.exponent()}, history_);
     history_.forgone = decision.forgone;
@@ -165,6 +165,13 @@ class Marcher {
       return fail({StepOutcome::crawls, -1}, length.step);
     if (is_event && base_->t < end_ && goes_on_) pass_event();
     if (length.arrives && base_->t < end_ && goes_on_) pass_breakpoint();
+  }
+
+  /// That of laws which say themselves how long a step may be: what they say holds for the tolerance 1e-3 and looser
+  /// ones, below which it falls as errors of second order do.
+  double error_of_laws() {
+    const double stricter = std::max(1.0, std::sqrt(1e-3 / estimator_.tolerance()));
+    return std::pow(stricter * timeline_.unresolved(*from_, *to_), estimator_.exponent());
   }
 
   /// Whether the error stays while steps are tried that are ever shorter: what it shows is then no error of theirs, but

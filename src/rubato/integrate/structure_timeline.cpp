@@ -1,4 +1,5 @@
 #include <rubato/integrate/structure_timeline.hpp>
+#include <rubato/model/laws/law_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -240,6 +241,17 @@ GuardValue StructureTimeline::guard(Index guard, const system::State& from, cons
       break;
   }
   return {1.0, 0.0};
+}
+
+double StructureTimeline::unresolved(const system::State& from, const system::State& to) {
+  double largest = 0.0;
+  for (Index j = 0; j < system_.law_count(); ++j) {
+    const auto* law = dynamic_cast<const model::LawResolution*>(system_.laws()[static_cast<std::size_t>(j)].law.get());
+    if (!law) continue;
+    largest = std::max(largest, law->unresolved(system_.law_point(j, from, model::Side::right),
+                                                system_.law_point(j, to, model::Side::left)));
+  }
+  return largest;
 }
 
 double StructureTimeline::guard_of_law(Index contact, const system::State& from, const system::State& to,

@@ -28,6 +28,7 @@ class StructureTimeline final : public Timeline {
   bool restart(system::State& state) override;
   Passage pass(const system::State& before, system::State& state, double shift) override;
   double resolution() const override { return resolution_; }
+  double unresolved(const system::State& from, const system::State& to) override;
   Crossing first_crossing(const system::State& from, const system::State& to, double least, Look look) override;
   GuardValue guard(Index guard, const system::State& from, const system::State& to) override;
 

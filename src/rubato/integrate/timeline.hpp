@@ -49,6 +49,13 @@ class Timeline {
   /// Times are located to this [s].
   virtual double resolution() const = 0;
 
+  /// How much too long a step is for what laws do within it: the largest model::LawResolution::unresolved().
+  virtual double unresolved(const system::State& from, const system::State& to) {
+    (void)from;
+    (void)to;
+    return 0.0;
+  }
+
   /// The first transition within a step, by interpolation between its ends.
   /// @param least  transitions before this share of the step are passed over: they were located by the last step, or
   ///               follow it so closely that locating each would stop the march

@@ -33,6 +33,9 @@ class Estimator {
   /// The motion has a kink here (a slider has changed its state, a load its slope): differences across it mean nothing.
   virtual void forget() = 0;
 
+  /// What error() divides by [-].
+  virtual double tolerance() const { return 1e-3; }
+
   /// The error is proportional to h to this power on smooth problems.
   virtual int exponent() const = 0;
 

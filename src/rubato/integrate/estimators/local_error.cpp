@@ -73,6 +73,7 @@ class LocalErrorEstimator final : public Estimator {
   }
 
   void forget() override { known_ = 0; }
+  double tolerance() const override { return tolerance_; }
   int exponent() const override { return c_.order; }
   double size() const override { return scales_.size(); }
 

@@ -1,4 +1,5 @@
 #include <rubato/integrate/mechanism/law_guards.hpp>
+#include <rubato/model/laws/law_resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +128,19 @@ double LawGuards::value(const model::MechanismLaw& law, double share) {
   if (std::abs(start.rate) <= near * std::abs(begin.acceleration))
     start.rate = std::copysign(std::numeric_limits<double>::min(), begin.acceleration);
   return law.law->guard(start, memory, at(law, share), near);
+}
+
+double LawGuards::unresolved(const system::State& from, const system::State& to) {
+  double largest = 0.0;
+  bool has_followed = false;
+  for (const model::MechanismLaw& law : mechanism_.laws) {
+    const auto* resolution = dynamic_cast<const model::LawResolution*>(law.law.get());
+    if (!resolution) continue;
+    if (!has_followed) follow(from, to);
+    has_followed = true;
+    largest = std::max(largest, resolution->unresolved(at(law, 0.0), at(law, 1.0)));
+  }
+  return largest;
 }
 
 GuardValue LawGuards::guard(Index law, const system::State& from, const system::State& to) {

@@ -17,6 +17,8 @@ class LawGuards {
 
   /// The law whose guard vanishes first, not before a share of the step; -1: none.
   Crossing first_crossing(const system::State& from, const system::State& to, double least);
+  /// The largest model::LawResolution::unresolved() of the laws in a step.
+  double unresolved(const system::State& from, const system::State& to);
   /// Of a law, at the end of a step.
   GuardValue guard(Index law, const system::State& from, const system::State& to);
   /// How a law that sticks goes on at the end of a step that may have ended at a transition, or went on at its start.
