@@ -144,7 +144,7 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
       verdict_with("title", "titel"),
       "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
       "title, parameters, coordinate, matrices, model, spring, damper, damping, slider, stop, bouc_wen, "
-      "cable, dahl, lugre, nonlinear_spring, smooth_friction, "
+      "cable, dahl, iwan, lugre, nonlinear_spring, smooth_friction, "
       "contact, "
       "force, "
       "distributed_force, "
@@ -169,7 +169,7 @@ TEST(KeyError, NamesAnUnknownTable) {
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
       "title, parameters, coordinate, matrices, model, spring, damper, damping, slider, stop, bouc_wen, "
-      "cable, dahl, lugre, nonlinear_spring, smooth_friction, "
+      "cable, dahl, iwan, lugre, nonlinear_spring, smooth_friction, "
       "contact, "
       "force, "
       "distributed_force, "

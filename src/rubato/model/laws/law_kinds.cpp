@@ -9,12 +9,13 @@ namespace rubato::model {
 LawKind bouc_wen();
 LawKind cable();
 LawKind dahl();
+LawKind iwan();
 LawKind lugre();
 LawKind nonlinear_spring();
 LawKind smooth_friction();
 
 std::span<const LawKind> law_kinds() {
-  static const std::vector all{bouc_wen(), cable(), dahl(), lugre(), nonlinear_spring(), smooth_friction()};
+  static const std::vector all{bouc_wen(), cable(), dahl(), iwan(), lugre(), nonlinear_spring(), smooth_friction()};
   return all;
 }
 
