@@ -331,8 +331,8 @@ duration = 1.0
 
     def test_laws_names_every_law_and_what_to_take_where_one_is_refused(self):
         lines = self.run_command("laws").stdout.splitlines()
-        table = {line.split("  ")[0]: line for line in lines[1:9]}
-        for law in ("slider", "stop", "bouc_wen", "nonlinear_spring", "contact", "joint friction", "joint lock"):
+        table = {line.split("  ")[0]: line for line in lines[1:14]}
+        for law in ("slider", "stop", "bouc_wen", "cable", "dahl", "iwan", "lugre", "nonlinear_spring", "smooth_friction", "contact", "joint friction", "joint lock"):
             self.assertIn(law, table)
         column = lines[0].index("harmonic_balance")
         self.assertTrue(table["bouc_wen"][column:].startswith("by samples"))
