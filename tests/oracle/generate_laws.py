@@ -1,4 +1,4 @@
-"""Random studies with Bouc-Wen elements and nonlinear springs, for seeds from 30001 on: `generate_laws.py SEED FOLDER`.
+"""Random studies with Bouc-Wen and Dahl elements, nonlinear springs, cables and regularised friction, for seeds from 30001 on: `generate_laws.py SEED FOLDER`.
 
 Models, sliders, stops and loads are drawn as in `generate.py`.
 """
@@ -28,7 +28,9 @@ class WithLaws(Generator):
                 between = [self.random.choice(turning), "ground"]
                 length = self.lever() * self.log(0.03, 0.3)
                 k, x = k * length**2, x / length
-            if self.chance(0.5):
+            if self.chance(0.2):
+                self.named(between, k, x)
+            elif self.chance(0.5):
                 self.bouc_wen(between, k, x)
             else:
                 self.spring(between, k, x)
@@ -58,6 +60,23 @@ class WithLaws(Generator):
         if self.chance(0.5):
             part["name"] = self.random.choice(["joint ", "wire", "frame "]) + str(len(self.tables.get("bouc_wen", [])))
         self.tables.setdefault("bouc_wen", []).append(part)
+
+    def named(self, between, k, x):
+        """Laws that are Bouc-Wen elements and formulas under names of their own."""
+        table = self.random.choice(["dahl", "smooth_friction", "cable"])
+        part = {"between": between}
+        if table == "dahl":
+            part |= {"stiffness": self.number(k), "slip_force": self.number(k * x * self.log(0.1, 3))}
+        elif table == "cable":
+            part |= {"stiffness": self.number(k)}
+            if self.chance(0.7):
+                part["length"] = self.number(x * self.uniform(-0.3, 0.5))
+        else:
+            part |= {"friction_coefficient": self.number(self.uniform(0.1, 0.8)), "normal_load": self.number(k * x),
+                     "velocity": self.number(x * self.omega * self.log(0.1, 1))}
+        if self.chance(0.5):
+            part["name"] = f"{table} of its own {len(self.tables.get(table, []))}"
+        self.tables.setdefault(table, []).append(part)
 
     def spring(self, between, k, x):
         a = self.size
@@ -116,7 +135,7 @@ class WithLaws(Generator):
         if self.chance(0.4):
             method = self.random.choice(["average_acceleration", "hht", "wbz", "linear_acceleration", "dormand_prince",
                                          "bogacki_shampine", "generalized_alpha", "newmark", "central_difference"])
-            if "bouc_wen" not in self.tables or method not in ("dormand_prince", "bogacki_shampine"):  # pairs are refused
+            if not {"bouc_wen", "dahl"} & set(self.tables) or method not in ("dormand_prince", "bogacki_shampine"):  # pairs are refused
                 automatic["method"] = self.method(method)
         if self.chance(0.15):
             automatic["output"] = self.random.choice([{"every": 2}, {"interval": self.duration / 50}])

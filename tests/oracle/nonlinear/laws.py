@@ -1,4 +1,5 @@
-"""Bouc-Wen elements and nonlinear springs, read from `[[bouc_wen]]` and `[[nonlinear_spring]]`.
+"""Bouc-Wen elements and nonlinear springs, read from `[[bouc_wen]]` and `[[nonlinear_spring]]`, and what is one of them
+under another name: `[[dahl]]`, `[[smooth_friction]]`, `[[cable]]`. A `[[lugre]]` or `[[iwan]]` is not read.
 
 A law gives the force f that acts on the first of its two ends as -f and on the second as +f, while u = x_first - x_second;
 on the coordinate of a joint -f acts on the second part.
@@ -149,11 +150,22 @@ def read_laws(study, place):
         laws.append(BoucWen(str(part.get("name", f"bouc_wen{i + 1}")), b, study.number(part["stiffness"]),
                             number("post_yield_ratio", 0.0), number("A", 1.0), number("beta", 0.5), number("gamma", 0.5),
                             number("n", 1.0), turns))
-    for i, part in enumerate(study.raw.get("nonlinear_spring", [])):
+    for i, part in enumerate(study.raw.get("dahl", [])):  # df/du = sigma (1 - sgn(u') f/Fc), with f = sigma z
         b, turns = place(part)
-        try:
-            formula = study.formula(str(part["force"]), ("u", "rate", "t"))
-        except FormulaError as why:
-            raise Unreadable(str(why)) from None
-        laws.append(NonlinearSpring(str(part.get("name", f"nonlinear_spring{i + 1}")), b, formula, turns))
+        sigma, limit = study.number(part["stiffness"]), study.number(part["slip_force"])
+        laws.append(BoucWen(str(part.get("name", f"dahl{i + 1}")), b, sigma, 0.0, 1.0, sigma / limit, 0.0, 1.0, turns))
+    formulas = {"nonlinear_spring": lambda part: str(part["force"]),
+                "smooth_friction": lambda part: f"({part['friction_coefficient']})*({part['normal_load']})*tanh(rate/({part['velocity']}))",
+                "cable": lambda part: f"({part['stiffness']})*max(u - ({part.get('length', 0)}), 0)"}
+    for table, formula_of in formulas.items():
+        for i, part in enumerate(study.raw.get(table, [])):
+            b, turns = place(part)
+            try:
+                formula = study.formula(formula_of(part), ("u", "rate", "t"))
+            except FormulaError as why:
+                raise Unreadable(str(why)) from None
+            laws.append(NonlinearSpring(str(part.get("name", f"{table}{i + 1}")), b, formula, turns))
+    for table in ("lugre", "iwan"):
+        if study.raw.get(table):
+            raise Unreadable(f"a {table} element")
     return laws
