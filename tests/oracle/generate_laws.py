@@ -68,9 +68,8 @@ class WithLaws(Generator):
         if table == "dahl":
             part |= {"stiffness": self.number(k), "slip_force": self.number(k * x * self.log(0.1, 3))}
         elif table == "cable":
-            part |= {"stiffness": self.number(k)}
-            if self.chance(0.7):
-                part["length"] = self.number(x * self.uniform(-0.3, 0.5))
+            # Not at rest where it becomes taut: which slope it has there is a matter of taste.
+            part |= {"stiffness": self.number(k), "length": self.number(x * self.random.choice([-1, 1]) * self.uniform(0.1, 0.5))}
         else:
             part |= {"friction_coefficient": self.number(self.uniform(0.1, 0.8)), "normal_load": self.number(k * x),
                      "velocity": self.number(x * self.omega * self.log(0.1, 1))}

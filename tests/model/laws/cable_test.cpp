@@ -20,6 +20,10 @@ TEST(Cable, OnlyPulls) {
   EXPECT_EQ(law->at({1.5, 1.0}, nullptr).by_u, 9.0);
   EXPECT_DOUBLE_EQ(law->stored_energy(1.5, nullptr), 1.125);
   EXPECT_EQ(law->stored_energy(-3.0, nullptr), 0.0);
+  // Just taut: as it goes on, from rest the mean of both.
+  EXPECT_EQ(law->at({1.0, 0.0}, nullptr).by_u, 4.5);
+  EXPECT_EQ(law->at({1.0, 2.0}, nullptr).by_u, 9.0);
+  EXPECT_EQ(law->at({1.0, -2.0}, nullptr).by_u, 0.0);
   EXPECT_FALSE(law->is_odd());
   EXPECT_TRUE(std::isnan(law->at({std::nan(""), 0.0}, nullptr).force));
 }

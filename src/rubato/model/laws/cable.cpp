@@ -16,6 +16,7 @@ class Cable final : public Law {
     return to.u == length_ ? LawAnswer{0.0, stiffness_, 0.0} : at(to, nullptr);
   }
   LawAnswer at(const LawPoint& point, const double*) const override {
+    if (point.u == length_) return {0.0, (point.rate > 0.0 ? 1.0 : point.rate < 0.0 ? 0.0 : 0.5) * stiffness_, 0.0};
     if (!(point.u > length_)) return {std::isnan(point.u) ? point.u : 0.0};
     return {stiffness_ * (point.u - length_), stiffness_, 0.0};
   }
