@@ -5,6 +5,7 @@
 | order | the locks of a joint, and what ties joints, in another order |
 | gear back | a gear from the second joint to the first, of the inverse ratio |
 | apart | some stops of a strut or of a prismatic joint on a strut of their own |
+| stops | elastic stops of joints that hold from below as `[[stop]]`s on these joints |
 | velocities | what rates of joints make of the velocities of all parts, given instead |
 | joint's own | a bushing on the place of a joint is what the joint's own spring and damper are |
 | springs | a bushing between the ground and a centre of mass is springs and dampers between coordinates |
@@ -26,6 +27,7 @@ from random_structure.toml import write_toml
 from study import Study
 
 APART = ("reaction_lock", "reaction_gear", "events")
+ACCOUNTS = ("law_force", "law_moment", "strain", "dissipated", "stop")      # of which stops have their own
 
 
 def models(seed, folder):
@@ -38,7 +40,7 @@ def models(seed, folder):
     rng = generator.rng
     ways = {"order": in_order, "gear back": gear_back, "apart": lambda plain: locks_apart(plain, rng),
             "velocities": lambda plain: velocities(plain, folder)}
-    out = [(tables, ways, APART)]
+    out = [(tables, ways, APART), (tables, {"stops": stops}, (*APART, *ACCOUNTS))]
     for mounted, way, rewrite in ((on_a_joint(tables, generator), "joint's own", own_spring), (at_a_centre(tables, generator), "springs", springs)):
         if mounted is not None:
             out.append((mounted, {way: rewrite}, (*APART, "mounted.")))
@@ -92,6 +94,33 @@ def locks_apart(tables, rng):
         twin["lock"] = [{**lock, "at": lock["at"] + shift} for lock in stops]
         taken.append(twin)
     tables.get("joint", []).extend(taken)
+    return tables if taken else None
+
+
+def stops(tables):
+    """Of locks with a stiffness whose free values are said to be below, or that lie above where their joint starts."""
+    tables, taken = copy.deepcopy(tables), []
+    for joint in tables.get("joint", []):
+        given = joint.get("lock", [])
+        given = given if isinstance(given, list) else [given]
+        here = joint.get("angle", joint.get("displacement", None if joint["type"] == "strut" else 0.0))
+
+        def holds_from_below(lock):
+            at = lock["at"]
+            return lock["kind"] == "stop" and "stiffness" in lock and (
+                lock.get("side") == "below" or not isinstance(at, str) and isinstance(here, float) and at > here + 1e-6)
+
+        out = [lock for lock in given if holds_from_below(lock)]
+        if not out:
+            continue
+        left = [lock for lock in given if lock not in out]
+        joint.pop("lock")
+        if left:
+            joint["lock"] = left
+        for lock in out:
+            taken.append({"name": f"stop {len(taken)}", "joint": joint["name"], "gap": lock["at"],
+                          **{key: lock[key] for key in ("stiffness", "damping") if key in lock}})
+    tables["stop"] = taken
     return tables if taken else None
 
 
