@@ -22,16 +22,17 @@ struct Row {
 };
 
 std::vector<Row> rows() {
-  std::vector<Row> rows{{"slider", "dry friction: a spring that slips at its limit", Element::slider},
-                        {"stop", "a one-sided spring with a damper", Element::stop}};
+  std::vector<Row> rows{
+      {"slider", "dry friction: a spring that slips at its limit", Element::slider},
+      {"stop", "a one-sided spring with a damper; in mechanisms modes have it closed or open as it is", Element::stop}};
   for (const model::LawKind& kind : model::law_kinds()) rows.push_back({kind.table, kind.meaning, Element::law});
   rows.push_back(
       {"contact", "friction in one or two directions under a spring across them that only pushes", Element::contact});
-  rows.push_back(
-      {"slider under a load",
-       "a slider whose normal_load is a formula of t or the force of another part; in mechanisms every slider, and its "
-       "modes are those of its branch",
-       Element::pressed_slider});
+  rows.push_back({"slider under a load",
+                  "a slider whose normal_load is a formula of t, the force of another part or the reaction of a joint; "
+                  "in mechanisms "
+                  "every slider, and its modes are those of its branch",
+                  Element::pressed_slider});
   rows.push_back({"joint friction", "of the joints of a mechanism", Element::joint_friction});
   rows.push_back({"joint lock", "of the joints of a mechanism", Element::lock});
   return rows;

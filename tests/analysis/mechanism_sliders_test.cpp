@@ -2,6 +2,7 @@
 
 #include <support/mechanism_study.hpp>
 #include <support/ran_study.hpp>
+#include <support/two_masses.hpp>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -16,48 +17,12 @@
 namespace rubato {
 namespace {
 
+using testing::automatic;
+using testing::damped_steps;
+using testing::equal_steps;
 using ::testing::HasSubstr;
 using testing::MechanismStudy;
-
-const std::string swinging =
-    "force = [{ on = \"X\", expression = \"4*sin(1.3*t) + 0.5\" }, { on = \"Z\", expression = \"3*cos(2*t)\" }]\n";
-
-/// Two masses on springs, one that slides along x and one that presses, as coordinates or as the x of two bodies.
-struct TwoMasses {
-  std::string analysis, parts;  ///< with X, Z for the two
-  std::string forces = swinging;
-
-  std::string structure() const {
-    return "coordinate = [{ name = \"x\", mass = 1.0 }, { name = \"z\", mass = 1.5 }]\n" + rest("x", "z");
-  }
-  std::string mechanism() const {
-    return "body = [{ name = \"x\", mass = 1.0, inertia = 1.0, position = [0.0, 0.0] }, "
-           "{ name = \"z\", mass = 1.5, inertia = 1.0, position = [0.0, 1.0] }]\n" +
-           rest("x.x", "z.x");
-  }
-
- private:
-  std::string rest(const std::string& x, const std::string& z) const {
-    const std::string text =
-        "spring = [{ between = [\"X\", \"ground\"], stiffness = 3.5 }, "
-        "{ between = [\"Z\", \"ground\"], stiffness = 2.0 }]\n"
-        "damper = [{ between = [\"X\", \"ground\"], damping = 0.1 }]\n" +
-        forces + parts;
-    std::string result;
-    for (const char c : text) result += c == 'X' ? x : c == 'Z' ? z : std::string(1, c);
-    return result + analysis;
-  }
-};
-
-const std::string equal_steps =
-    "[[analysis]]\nname = \"run\"\ntype = \"transient\"\nmethod = \"average_acceleration\"\nstep = 0.01\n"
-    "duration = 12.0\n";
-std::string automatic(double tolerance, const std::string& more = "") {
-  return fmt::format(
-      "[[analysis]]\nname = \"run\"\ntype = \"transient\"\nstep = {{ tolerance = {}{} }}\nduration = "
-      "12.0\noutput = {{ interval = 0.1 }}\n",
-      tolerance, more);
-}
+using testing::TwoMasses;
 
 const std::string by_time =
     "[[slider]]\nname = \"rub\"\nbetween = [\"X\", \"ground\"]\nstiffness = 7.2\nfriction_coefficient = 0.3\n"
@@ -128,6 +93,50 @@ TEST(SliderOfAMechanism, UnderAConstantLoadIsTheSliderOfTheStructure) {
       apart = std::max(apart, std::abs(rows.rows[i][rows.column(quantity, "rub")] -
                                        structure.rows[i][structure.column(quantity, "rub")]));
   EXPECT_LT(apart, 1e-9);
+  EXPECT_EQ(ran.last("run", "normal_force", "rub"), 4.0);
+}
+
+// A prismatic joint leaves free what is between its two ends: -f acts on the second part of the joint.
+TEST(SliderOfAMechanism, OnAJointIsTheSliderBetweenItsEnds) {
+  const std::string rail =
+      "[[joint]]\nname = \"rail\"\ntype = \"prismatic\"\nbetween = [\"ground\", \"x\"]\nat = [0.0, 0.0]\naxis = [1.0, "
+      "0.0]\n";
+  for (const std::string& parts : {by_time, by_law}) {
+    const MechanismStudy between(TwoMasses{damped_steps, rail + parts}.mechanism());
+    const MechanismStudy on(
+        TwoMasses{damped_steps, rail + testing::replaced(parts, "between = [\"X\", \"ground\"]", "joint = \"rail\"")}
+            .mechanism());
+    ASSERT_EQ(on.report.status, analysis::RunStatus::done) << on.report.message;
+    expect_same(on.table("run"), between.table("run"), {"rub"}, 0.5, 1e-11);
+  }
+}
+
+TEST(SliderOfAMechanism, OnAHingeIsThatOfAnAngle) {
+  const std::string rest = "stiffness = 7.2\nfriction_coefficient = 0.3\nnormal_load = 4.0\n" + damped_steps;
+  const auto force = [](const std::string& on) {
+    return "force = [{ on = \"" + on + "\", expression = \"4*sin(1.3*t) + 0.5\" }]\nspring = [{ between = [\"" + on +
+           "\", \"ground\"], stiffness = 3.5 }]\n";
+  };
+  const auto structure = testing::run_study("coordinate = [{ name = \"x\", mass = 0.8 }]\n" + force("x") +
+                                            "[[slider]]\nname = \"rub\"\nbetween = [\"x\", \"ground\"]\n" + rest)
+                             .tables.at("run");
+  const MechanismStudy ran(
+      "body = [{ name = \"wheel\", mass = 1.0, inertia = 0.8, position = [0.0, 0.0] }]\n"
+      "joint = [{ name = \"pin\", type = \"revolute\", between = [\"ground\", \"wheel\"], at = [0.0, 0.0] }]\n" +
+      force("wheel.rz") + "[[slider]]\nname = \"rub\"\njoint = \"pin\"\n" + rest);
+  ASSERT_EQ(ran.report.status, analysis::RunStatus::done) << ran.report.message;
+  const auto& rows = ran.table("run");
+  ASSERT_EQ(rows.rows.size(), structure.rows.size());
+  double apart = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < rows.rows.size(); ++i) {
+    apart = std::max(apart, std::abs(rows.rows[i][rows.column("moment", "rub")] -
+                                     structure.rows[i][structure.column("force", "rub")]));
+    apart = std::max(apart, std::abs(rows.rows[i][rows.column("slip_angle", "rub")] -
+                                     structure.rows[i][structure.column("slip", "rub")]));
+    largest = std::max(largest, rows.rows[i][rows.column("moment", "rub")]);
+  }
+  EXPECT_LT(apart, 1e-9);
+  EXPECT_NEAR(largest, 1.2, 1e-12);
   EXPECT_EQ(ran.last("run", "normal_force", "rub"), 4.0);
 }
 

@@ -224,13 +224,13 @@ system::LocallyNonlinear on_stops(double weight, double spring, std::vector<mode
 TEST(StaticEquilibrium, RestsOnAStop) {
   for (const double gap : {0.01, 0.0, -0.02, 3.0}) {
     const StaticEquilibrium found =
-        find_equilibrium(on_stops(9.81, 0.0, {{"floor", {"mass", "ground"}, {}, gap, 1000.0, 5.0, {}}}), {});
+        find_equilibrium(on_stops(9.81, 0.0, {{"floor", {"mass", "ground"}, {}, {}, {}, gap, 1000.0, 5.0, {}}}), {});
     ASSERT_EQ(found.outcome, StaticOutcome::found) << gap;
     EXPECT_NEAR(found.state.q[0], gap + 9.81e-3, 1e-13 * std::max(1.0, std::abs(gap))) << gap;
     EXPECT_NEAR(found.state.slider_force[0], 9.81, 1e-9);
   }
   const StaticEquilibrium wrong_side =
-      find_equilibrium(on_stops(-9.81, 0.0, {{"floor", {"mass", "ground"}, {}, 0.01, 1000.0, 0.0, {}}}), {});
+      find_equilibrium(on_stops(-9.81, 0.0, {{"floor", {"mass", "ground"}, {}, {}, {}, 0.01, 1000.0, 0.0, {}}}), {});
   EXPECT_EQ(wrong_side.outcome, StaticOutcome::mechanism);
 }
 
@@ -238,7 +238,7 @@ TEST(StaticEquilibrium, RestsOnAStop) {
 // 500 u + 1000 (u + 0.03) = 0. Between two stops only one carries.
 TEST(StaticEquilibrium, ClosesAStopWhereTheSpringGivesThatFar) {
   const auto at = [](double weight, double gap) {
-    const auto system = on_stops(weight, 500.0, {{"s", {"mass", "ground"}, {}, gap, 1000.0, 0.0, {}}});
+    const auto system = on_stops(weight, 500.0, {{"s", {"mass", "ground"}, {}, {}, {}, gap, 1000.0, 0.0, {}}});
     const StaticEquilibrium found = find_equilibrium(system, {});
     EXPECT_EQ(found.outcome, StaticOutcome::found);
     return found.state.q[0];
@@ -247,8 +247,8 @@ TEST(StaticEquilibrium, ClosesAStopWhereTheSpringGivesThatFar) {
   EXPECT_NEAR(at(8.0, 0.01), 0.012, 1e-16);
   EXPECT_NEAR(at(0.0, -0.03), -0.02, 1e-16);
   const auto both = on_stops(9.81, 0.0,
-                             {{"below", {"mass", "ground"}, {}, 0.01, 1000.0, 0.0, {}},
-                              {"above", {"ground", "mass"}, {}, 0.01, 1000.0, 0.0, {}}});
+                             {{"below", {"mass", "ground"}, {}, {}, {}, 0.01, 1000.0, 0.0, {}},
+                              {"above", {"ground", "mass"}, {}, {}, {}, 0.01, 1000.0, 0.0, {}}});
   const StaticEquilibrium found = find_equilibrium(both, {});
   ASSERT_EQ(found.outcome, StaticOutcome::found);
   EXPECT_NEAR(found.state.q[0], 0.01981, 1e-14);
@@ -275,7 +275,7 @@ TEST(StaticEquilibrium, IsNotWhereAStepTowardsAStopWasCut) {
     description.coordinates = {{"a", 1.0, 0.0, 0.0, {}}, {"b", 1.0, 0.0, 0.0, {}}};
     description.springs = {{{"a", "ground"}, {}, 500.0, {}}, {{"b", "a"}, {}, 150.0, {}}};
     description.held_forces = {{"a", -40.0, {}}, {"b", 30.0, {}}};
-    description.stops = {{"s", {"b", "ground"}, {}, 0.1, stiffness, 0.0, {}}};
+    description.stops = {{"s", {"b", "ground"}, {}, {}, {}, 0.1, stiffness, 0.0, {}}};
     const auto system = assembled(description);
     const StaticEquilibrium found = find_equilibrium(system, {});
     ASSERT_EQ(found.outcome, StaticOutcome::found) << stiffness;
@@ -305,10 +305,10 @@ TEST(StaticEquilibrium, BalancesAllForcesWhateverContactsThereAre) {
       const double stiffness = std::pow(10.0, uniform(-2.0, 6.0));
       if (uniform(0.0, 1.0) < 0.5)
         description.stops.push_back(
-            {"stop" + name(i), {name(i), any_other(i)}, {}, uniform(-0.2, 0.5), stiffness, 0.0, {}});
+            {"stop" + name(i), {name(i), any_other(i)}, {}, {}, {}, uniform(-0.2, 0.5), stiffness, 0.0, {}});
       else
         description.sliders.push_back(
-            {"slider" + name(i), {any_other(i), name(i)}, {}, stiffness, uniform(0.0, 1.0), 1.0, {}});
+            {"slider" + name(i), {any_other(i), name(i)}, {}, {}, {}, stiffness, uniform(0.0, 1.0), 1.0, {}});
     }
     const auto system = assembled(description);
     const StaticEquilibrium found = find_equilibrium(system, {});

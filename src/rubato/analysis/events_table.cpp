@@ -48,7 +48,7 @@ void write_events(const std::string& name, const integrate::Events& events, resu
       "events",
       "time",
       {scalar("time", "s", "when it happened"),
-       {"joint", "1", "whose lock or friction, or which slider", "", {}, events.parts},
+       {"joint", "1", "whose lock or friction, or which slider or stop", "", {}, events.parts},
        {"event", "1", "what it did", "", {}, {"lets_go", "locks", "slips", "sticks", "opens", "closes"}},
        scalar("energy_lost", "J", "energy that a rigid lock took, or that a damped stop still held as it let go")},
       {{"type", "events"}}};
@@ -76,21 +76,25 @@ std::string warning_of(const integrate::Events& events) {
 void report_events(const integrate::Events& events, double known, std::vector<std::string>& findings) {
   constexpr long most_told = 6;
   std::vector<long> changes(events.parts.size(), 0);
-  std::vector<bool> is_of_lock(events.parts.size(), false);
+  std::vector<bool> is_of_lock(events.parts.size(), false), only_closes(events.parts.size(), true);
   for (std::size_t i = events.at_start; i < events.all.size(); ++i) {
     const integrate::Event& event = events.all[i];
     const bool is_lock = event.change == Change::locks || event.change == Change::lets_go;
     is_of_lock[event.part] = is_lock;
+    const bool is_of_gap = event.change == Change::closes || event.change == Change::opens;
+    if (!is_of_gap) only_closes[event.part] = false;
     if (++changes[event.part] <= most_told)
       findings.push_back(fmt::format("\"{}\" {} at t = {} s{}{}", events.parts[event.part],
                                      integrate::name_of(event.change), told_time(event.t, known),
-                                     lock_told(events, event.part), is_lock ? energy_told(event) : ""));
+                                     lock_told(events, event.part), is_lock || is_of_gap ? energy_told(event) : ""));
   }
   for (std::size_t i = 0; i < changes.size(); ++i)
     if (changes[i] > most_told)
       findings.push_back(fmt::format("\"{}\" {} {} times in all{}", events.parts[i],
-                                     is_of_lock[i] ? "locks and lets go" : "sticks and slips", changes[i],
-                                     lock_told(events, i)));
+                                     is_of_lock[i]    ? "locks and lets go"
+                                     : only_closes[i] ? "closes and opens"
+                                                      : "sticks and slips",
+                                     changes[i], lock_told(events, i)));
 }
 
 }  // namespace rubato::analysis

@@ -43,6 +43,15 @@ class LawBuilder {
     return at_least_zero(quantity, what, "; a slider cannot be pulled, its least load is 0");
   }
 
+  template <class Description>
+  static void refuse_joint(const Description& description, const std::string& part) {
+    if (description.joint.empty()) return;
+    throw InvalidInput(description.joint_where,
+                       fmt::format("{} acts on the joint \"{}\", but the model has no [[joint]]; join two "
+                                   "coordinates, with between = [\"NAME\", \"ground\"]",
+                                   part, description.joint));
+  }
+
   void take_sliders() {
     for (const SliderDescription& description : description_.sliders) {
       const std::string part = fmt::format("slider \"{}\"", description.name);
@@ -53,6 +62,7 @@ class LawBuilder {
       if (places_.has(description.name))
         throw InvalidInput(description.where,
                            fmt::format("{} has the name of a coordinate; results would mix them up", part));
+      refuse_joint(description, part);
       Slider slider;
       slider.name = description.name;
       places_.join(description.between, description.between_where, part, slider.first, slider.second);
@@ -124,6 +134,7 @@ class LawBuilder {
       if (is_slider(description.name) || places_.has(description.name))
         throw InvalidInput(description.where,
                            fmt::format("{} has the name of a slider or a coordinate; results would mix them up", part));
+      refuse_joint(description, part);
       Stop stop;
       stop.name = description.name;
       places_.join(description.between, description.between_where, part, stop.first, stop.second);
@@ -151,11 +162,7 @@ class LawBuilder {
         throw InvalidInput(
             description.where,
             fmt::format("{} has the name of a slider, a stop or a coordinate; results would mix them up", part));
-      if (!description.joint.empty())
-        throw InvalidInput(description.joint_where,
-                           fmt::format("{} acts on the joint \"{}\", but the model has no [[joint]]; join two "
-                                       "coordinates, with between = [\"NAME\", \"ground\"]",
-                                       part, description.joint));
+      refuse_joint(description, part);
       LawBetween law{description.name, description.kind, ground, ground, kind.make(description, parameters_, part)};
       if (description.shares.empty())
         places_.join(description.between, description.between_where, part, law.first, law.second);

@@ -23,12 +23,9 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (d.finite_elements) refuse(d.finite_elements->where, "[model]", "describe the structure by nodes and beams");
   if (!d.coordinates.empty())
     refuse(d.coordinates.front().where, "a [[coordinate]]", "take a [[node]] with a [[mass]]");
-  if (!d.stops.empty())
-    refuse(d.stops.front().where, "a [[stop]]",
-           "give a joint (of type \"strut\" between two points) lock = { at = ..., kind = \"stop\" }; what the stop of "
-           "a joint with a stiffness presses with may press on a [[slider]], with normal_load = { law = \"JOINT\" }");
   if (!d.contacts.empty())
-    refuse(d.contacts.front().where, "a [[contact]]", "give a joint friction, or a joint of type \"strut\" a lock");
+    refuse(d.contacts.front().where, "a [[contact]]",
+           "take a [[stop]] across it that presses on a [[slider]] along it, with normal_load = { law = \"NAME\" }");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (!std::holds_alternative<std::monostate>(d.damping))
     refuse(where_of(d.damping), "[damping]",
@@ -87,6 +84,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   for (const BushingDescription& bushing : description.bushings) take_bushing(assembly, bushing);
   take_springs(assembly);
   take_local_laws(assembly);
+  take_stops(assembly);
   take_sliders(assembly);
   for (const ForceDescription& force : description.forces) take_force(assembly, force);
   if (const auto& gravity = description.gravity)

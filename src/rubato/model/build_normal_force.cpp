@@ -29,7 +29,9 @@ Index place_of(const Parts& parts, const std::string& name) {
 
 }  // namespace
 
-bool SliderDescription::is_law() const { return !normal_law.empty() || names_time(normal_load.expression); }
+bool SliderDescription::is_law() const {
+  return !normal_law.empty() || follows_own_reaction(*this) || names_time(normal_load.expression);
+}
 
 NormalForce build_normal_formula(const SliderDescription& description, const numerics::Parameters& parameters,
                                  const std::string& part) {
@@ -50,6 +52,11 @@ NormalForce build_normal_formula(const SliderDescription& description, const num
 
 NormalForce build_normal_force(const SliderDescription& description, const ModelDescription& all, const Model& model,
                                const numerics::Parameters& parameters, const std::string& part) {
+  if (follows_own_reaction(description))
+    throw InvalidInput(description.normal_load.where,
+                       fmt::format("{}: normal_load is the reaction of a joint, and the model has no [[joint]]; name a "
+                                   "[[stop]] or a [[nonlinear_spring]] across it, with {{ law = \"NAME\" }}",
+                                   part));
   if (description.normal_law.empty()) return build_normal_formula(description, parameters, part);
   NormalForce normal;
   const std::string& name = description.normal_law;

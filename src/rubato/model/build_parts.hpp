@@ -29,6 +29,11 @@ Prescribed build_prescribed(const PrescribedDescription& description, Index coor
 /// The name of a slider, stop or law in whose u a coordinate is; empty: none.
 std::string contact_at(const Model& model, Index coordinate);
 
+/// Whether the reaction of the joint on which a slider acts presses on it: normal_load = "reaction".
+inline bool follows_own_reaction(const SliderDescription& slider) {
+  return slider.normal_load.expression == "reaction";
+}
+
 /// What presses on a slider whose load is a formula of t. Throws InvalidInput.
 /// @param part  "slider \"s1\""
 NormalForce build_normal_formula(const SliderDescription& description, const numerics::Parameters& parameters,

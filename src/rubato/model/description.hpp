@@ -71,6 +71,8 @@ struct SliderDescription {
   std::string name;
   Between between;
   std::array<Location, 2> between_where;
+  std::string joint;  ///< of mechanisms, instead: it rubs on the coordinate that this joint leaves free
+  Location joint_where;
   Quantity stiffness;             ///< kT [N/m]
   Quantity friction_coefficient;  ///< mu [-]
   Quantity normal_load;           ///< N [N]; may use t: what presses is its positive part
@@ -87,6 +89,8 @@ struct StopDescription {
   std::string name;
   Between between;
   std::array<Location, 2> between_where;
+  std::string joint;  ///< of mechanisms, instead: u is the coordinate that this joint leaves free
+  Location joint_where;
   Quantity gap;        ///< [m]; negative: compressed at u = 0
   Quantity stiffness;  ///< [N/m]
   Quantity damping;    ///< [N s/m]

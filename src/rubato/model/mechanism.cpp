@@ -1,6 +1,7 @@
 #include <rubato/core/error.hpp>
 #include <rubato/model/bodies/following_force.hpp>
 #include <rubato/model/bodies/gyroscopic.hpp>
+#include <rubato/model/joints/stop_element.hpp>
 #include <rubato/model/mechanism.hpp>
 
 #include <fmt/format.h>
@@ -101,6 +102,11 @@ SpacePoint Mechanism::space_point(Index node, const numerics::Vector3& at) const
 
 int Mechanism::add_lock(Lock lock) {
   const int index = static_cast<int>(locks.size());
+  if (lock.is_stop_part) {
+    elements.push_back(make_stop_element(lock, index));
+    locks.push_back(std::move(lock));
+    return index;
+  }
   const AtLock when{index, 1, true};
   std::visit(
       [&](const auto& s) {
@@ -143,9 +149,10 @@ int Mechanism::add_shared_friction(int leader, const FreeCoordinate& s, double a
 }
 
 void Mechanism::add_law(const std::string& name, const std::string& kind, const LawCoordinate& u,
-                        std::shared_ptr<const Law> law, const NormalForce& normal) {
+                        std::shared_ptr<const Law> law, const NormalForce& normal, const PressingReaction& reaction) {
   MechanismLaw added{name, kind, u, std::move(law), static_cast<Index>(laws.size()), law_memory_size, elements.size()};
   added.normal = normal;
+  added.reaction = reaction;
   if (normal.law >= 0) added.pressing = std::make_shared<MechanismLaw>(laws.at(static_cast<std::size_t>(normal.law)));
   if (normal.stop >= 0) added.stop = std::make_shared<Lock>(locks.at(static_cast<std::size_t>(normal.stop)));
   law_memory_size += added.law->memory_size();

@@ -138,8 +138,8 @@ struct Mechanism {
   PlanePoint plane_point(Index node, double x, double y) const;
   /// The point of a node in space that lies at a point of the world at the start.
   SpacePoint space_point(Index node, const numerics::Vector3& at) const;
-  /// A lock with the parts that make it: a spring and a damper, or a constraint. A latch with a stiffness keeps it for
-  /// good. What it turns off is made with AtLock{index, 1, false}.
+  /// A lock with the parts that make it: a spring and a damper, or a constraint; of a [[stop]] a force. A latch with a
+  /// stiffness keeps it for good. What it turns off is made with AtLock{index, 1, false}.
   /// @return its index
   int add_lock(Lock lock);
   /// Adds friction, with the constraint that lets it stick. @return its index
@@ -149,9 +149,10 @@ struct Mechanism {
   int add_shared_friction(int leader, const FreeCoordinate& s, double arm);
   /// Adds a law with the element that makes its force.
   /// @param kind    its table in the study file
-  /// @param normal  what presses on one that takes a normal force; of other laws and of stops those that are there
+  /// @param normal    what presses on one that takes a normal force; of other laws and of stops those that are there
+  /// @param reaction  what presses on it instead
   void add_law(const std::string& name, const std::string& kind, const LawCoordinate& u, std::shared_ptr<const Law> law,
-               const NormalForce& normal = {});
+               const NormalForce& normal = {}, const PressingReaction& reaction = {});
   /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
   void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);

@@ -79,6 +79,7 @@ void take_gear(MechanismAssembly& assembly, const GearDescription& gear);
 void take_bushing(MechanismAssembly& assembly, const BushingDescription& bushing);
 void take_springs(MechanismAssembly& assembly);
 void take_local_laws(MechanismAssembly& assembly);
+void take_stops(MechanismAssembly& assembly);
 void take_sliders(MechanismAssembly& assembly);
 void take_force(MechanismAssembly& assembly, const ForceDescription& force);
 

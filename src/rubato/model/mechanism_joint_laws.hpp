@@ -26,10 +26,13 @@ inline void require_axis(const JointDescription& joint, const std::string& part)
 
 /// Whether anything acts on the coordinate that a joint leaves free.
 inline bool has_law(const MechanismAssembly& assembly, const JointDescription& joint) {
-  const auto& laws = assembly.description.laws;
+  const ModelDescription& all = assembly.description;
+  const auto any_acts_on_it = [&](const auto& parts) {
+    return std::any_of(parts.begin(), parts.end(), [&](const auto& part) { return part.joint == joint.name; });
+  };
   return joint.motion || joint.rate || joint.drive || joint.drive_table || joint.stiffness || joint.damping ||
-         !joint.locks.empty() || joint.friction ||
-         std::any_of(laws.begin(), laws.end(), [&](const LawDescription& law) { return law.joint == joint.name; });
+         !joint.locks.empty() || joint.friction || any_acts_on_it(all.laws) || any_acts_on_it(all.sliders) ||
+         any_acts_on_it(all.stops);
 }
 
 /// Throws InvalidInput for a strut on which nothing acts: its length alone changes no motion.

@@ -122,7 +122,9 @@ bool Mechanism::has_kinks() const {
 
 bool Mechanism::has_followed_reactions() const {
   return std::any_of(model_.frictions.begin(), model_.frictions.end(),
-                     [](const model::JointFriction& friction) { return friction.follows_reaction(); });
+                     [](const model::JointFriction& friction) { return friction.follows_reaction(); }) ||
+         std::any_of(model_.laws.begin(), model_.laws.end(),
+                     [](const model::MechanismLaw& law) { return law.reaction.presses(); });
 }
 
 bool Mechanism::has_slip_directions() const {

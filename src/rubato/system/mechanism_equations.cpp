@@ -16,6 +16,9 @@ void MechanismEquations::go_to(const State& state, model::Side side) {
              state.rubbing.data(),
              state.stuck_at.data(),
              {nullptr, state.memory.data()}};
+  if (pressed_by_reactions_.empty()) return;
+  take_reactions(state, motion_, reactions_);
+  guess_ = state.multiplier.size() == reactions_.size() ? state.multiplier : Vector::Zero(reactions_.size());
 }
 
 void MechanismEquations::scatter(const ElementPlace& place, const double* matrix, double weight) {
@@ -39,6 +42,7 @@ void MechanismEquations::elements_and_loads(Vector& force) {
     for (std::size_t i = 0; i < place.place.size(); ++i)
       force[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
   }
+  add_pressed_by_reactions(guess_, -1.0, force);
 }
 
 void MechanismEquations::constraints(Vector& constraint) {
@@ -68,6 +72,8 @@ void MechanismEquations::linearise(const Weights& weights, const Vector& multipl
       force[place.place[i]] += local_[static_cast<std::size_t>(place.local[i])];
     scatter(place, matrix_.data(), 1.0);
   }
+  add_pressed_by_reactions(guess_, -1.0, force);
+  if (weights.friction) linearise_pressed_by_reactions();
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const JointPlace& place = joint_places_[j];
     double* const g = constraint.data() + place.first_row;
@@ -120,6 +126,7 @@ void MechanismEquations::add_constraint_force(const Vector& multiplier, double f
     const JointPlace& place = joint_places_[static_cast<std::size_t>(frictions[i].joint)];
     for (std::size_t k = 0; k < place.place.size(); ++k) out[place.place[k]] += applied * slope[place.local[k]];
   }
+  add_pressed_by_reactions(multiplier, factor, out);
 }
 
 void MechanismEquations::constraint_rate(const Vector& v, Vector& out) {

@@ -82,6 +82,7 @@ class MechanismEquations final : public ConstrainedEquations {
   /// Force and displacement of a law where go_to() led [N] and [m], or [N m] and [rad].
   double law_force(std::size_t law) const;
   double law_displacement(std::size_t law) const;
+  model::LawAnswer law_answer(std::size_t law) const;      ///< with its slopes
   model::Law::Contact law_contact(std::size_t law) const;  ///< what one that sticks does there
   double law_normal(std::size_t law) const;                ///< what presses on it there, 0 where it is open [N]
   /// Of forces, gravity and laws of joints [n].
@@ -110,6 +111,12 @@ class MechanismEquations final : public ConstrainedEquations {
   struct FrictionPlace {
     std::vector<int> slot;  // of the forces on the places of the joint against its pressing rows [places x rows]
   };
+  /// A law on which the reaction of a joint presses.
+  struct PressedByReaction {
+    std::size_t law = 0;
+    ElementPlace u;         // of its u
+    std::vector<int> slot;  // of the forces on the places of u against the rows that press [places x rows]
+  };
   struct Slip {
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();
     Eigen::Matrix2d slope = Eigen::Matrix2d::Zero();   // of it against the slip velocity [s/m]
@@ -126,6 +133,12 @@ class MechanismEquations final : public ConstrainedEquations {
   double reaction(Index row, const Vector& multiplier) const {
     return multiplier[row] + (excess_.size() > 0 ? excess_[row] : 0.0);
   }
+  /// Points a motion to the reactions of a state that press on laws.
+  void take_reactions(const State& state, model::Motion& motion, Vector& reactions) const;
+  /// out += factor times what multipliers make of the forces of laws on which reactions press, which are linear in them
+  /// about the reactions where go_to() led.
+  void add_pressed_by_reactions(const Vector& multiplier, double factor, Vector& out) const;
+  void linearise_pressed_by_reactions();
   ElementPlace place_of(const std::vector<Index>& places) const;
   void list_entries();
   void analyse();
@@ -146,7 +159,10 @@ class MechanismEquations final : public ConstrainedEquations {
   std::vector<model::JointPattern> patterns_;  // of the joints
   std::vector<Entry> entries_;                 // of G, joint by joint
   std::vector<FrictionPlace> friction_places_;
-  std::vector<double> jacobian_;  // of all joints
+  std::vector<PressedByReaction> pressed_by_reactions_;
+  Vector reactions_, other_reactions_;  // where go_to() led, and of a state to which the equations do not go [c]
+  Vector guess_;                        // multipliers where go_to() led, about which laws are linear in them [c]
+  std::vector<double> jacobian_;        // of all joints
   std::vector<double> local_, matrix_, velocity_, acceleration_;
   std::vector<double> negligible_, negligible_rate_;  // of each friction
   Vector excess_;  // of the reactions that friction follows, over the multipliers [c]

@@ -16,7 +16,7 @@ double MechanismEquations::pressing(const model::JointFriction& friction, const 
 }
 
 void MechanismEquations::set_reaction_lag(const Vector& lag, double share) {
-  if (!mechanism_.model().frictions.empty()) excess_ = share * lag;
+  if (!mechanism_.model().frictions.empty() || !pressed_by_reactions_.empty()) excess_ = share * lag;
 }
 
 void MechanismEquations::set_duration(double duration) {
@@ -159,7 +159,7 @@ bool MechanismEquations::has_sliding_reactions() const {
   const auto& frictions = mechanism_.model().frictions;
   for (std::size_t i = 0; i < frictions.size(); ++i)
     if (frictions[i].follows_reaction() && model::sliding_direction(motion_.rubbing[i]) != 0.0) return true;
-  return false;
+  return !pressed_by_reactions_.empty();  // by other multipliers another branch may be theirs
 }
 
 bool MechanismEquations::lets_go(const State& state) {

@@ -1,6 +1,7 @@
 #include <rubato/system/mechanism_equations.hpp>
 
 #include <algorithm>
+#include <variant>
 
 // The laws of a mechanism that have a memory.
 namespace rubato::system {
@@ -14,6 +15,7 @@ model::LawPoint MechanismEquations::law_point(std::size_t j, const State& state,
   there.v = other_velocity_.data() + 1;
   there.phase = state.phase.data();
   there.laws.memory = state.memory.data();
+  if (!pressed_by_reactions_.empty()) take_reactions(state, there, other_reactions_);
   return mechanism_.model().laws[j].point(there);
 }
 
@@ -47,17 +49,23 @@ double MechanismEquations::stored_by_laws(const State& state) {
 }
 
 void MechanismEquations::dissipated_by_laws(const State& from, const State& to, Vector& dissipated) {
+  if (!pressed_by_reactions_.empty()) excess_ = (to.t - from.t) * from.reaction_lag;  // as in the step
   for (std::size_t j = 0; j < step_start_.size(); ++j) {
     const model::MechanismLaw& law = mechanism_.model().laws[j];
     dissipated[static_cast<Index>(j)] =
         law.law->dissipated(law_point(j, from, model::Side::right), from.memory.data() + law.memory,
                             law_point(j, to, model::Side::left), to.memory.data() + law.memory);
   }
+  if (!pressed_by_reactions_.empty()) excess_.resize(0);
 }
 
 double MechanismEquations::law_force(std::size_t j) const {
   const model::MechanismLaw& law = mechanism_.model().laws[j];
   return law.law->at(law.point(motion_), motion_.laws.memory + law.memory).force;
+}
+
+model::LawAnswer MechanismEquations::law_answer(std::size_t j) const {
+  return mechanism_.model().laws[j].answer(motion_);
 }
 
 double MechanismEquations::law_displacement(std::size_t j) const {
@@ -76,6 +84,60 @@ double MechanismEquations::law_normal(std::size_t j) const {
 void MechanismEquations::add_laws_of_time(Vector& out) {
   for (const model::MechanismLaw& law : mechanism_.model().laws)
     if (law.depends_on_time()) add_force_of(law.element, out);
+}
+
+void MechanismEquations::take_reactions(const State& state, model::Motion& motion, Vector& reactions) const {
+  const Index rows = mechanism_.constraint_count();
+  if (state.multiplier.size() == rows)
+    reactions = state.multiplier;
+  else
+    reactions.setZero(rows);
+  if (excess_.size() == rows) reactions += excess_;
+  motion.multiplier = reactions.data();
+}
+
+namespace {
+
+/// The slope of a law by the reactions that press on it, and that of its u.
+struct ReactionSlope {
+  double by_row[3] = {}, of_u[model::SpaceCoordinate::tangent_size] = {};
+};
+
+/// False where it feels nothing of them: it sticks, or nothing presses.
+bool find_slope(const model::MechanismLaw& law, const model::Motion& motion, ReactionSlope& slope) {
+  const double by_normal = law.answer(motion).by_normal, size = law.reaction.force(motion);
+  if (by_normal == 0.0 || size == 0.0) return false;
+  for (int r = 0; r < law.reaction.rows; ++r)
+    slope.by_row[r] = by_normal * motion.multiplier[law.reaction.multiplier + r] / size;
+  std::visit([&](const auto& u) { u.slope(motion.q, slope.of_u); }, law.u);
+  return true;
+}
+
+}  // namespace
+
+void MechanismEquations::add_pressed_by_reactions(const Vector& multiplier, double factor, Vector& out) const {
+  for (const PressedByReaction& pressed : pressed_by_reactions_) {
+    const model::MechanismLaw& law = mechanism_.model().laws[pressed.law];
+    ReactionSlope slope;
+    if (!find_slope(law, motion_, slope)) continue;
+    double applied = 0.0;
+    for (int r = 0; r < law.reaction.rows; ++r) applied += slope.by_row[r] * multiplier[law.reaction.multiplier + r];
+    for (std::size_t k = 0; k < pressed.u.place.size(); ++k)
+      out[pressed.u.place[k]] += factor * applied * slope.of_u[pressed.u.local[k]];
+  }
+}
+
+void MechanismEquations::linearise_pressed_by_reactions() {
+  double* const values = saddle_.values();
+  for (const PressedByReaction& pressed : pressed_by_reactions_) {
+    const model::MechanismLaw& law = mechanism_.model().laws[pressed.law];
+    ReactionSlope slope;
+    if (!find_slope(law, motion_, slope)) continue;
+    const auto rows = static_cast<std::size_t>(law.reaction.rows);
+    for (std::size_t k = 0; k < pressed.u.place.size(); ++k)
+      for (std::size_t r = 0; r < rows; ++r)
+        values[pressed.slot[k * rows + r]] += slope.by_row[r] * slope.of_u[pressed.u.local[k]];
+  }
 }
 
 }  // namespace rubato::system

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
 // Where elements and joints write into the matrix of a mechanism: found once.
 namespace rubato::system {
@@ -100,6 +101,16 @@ void MechanismEquations::analyse() {
   }
   for (const Entry& entry : entries_) entries.emplace_back(n + entry.row, entry.place);
   for (const auto& friction : mechanism_.model().frictions) is_symmetric = is_symmetric && !friction.follows_reaction();
+  const auto& laws = mechanism_.model().laws;
+  for (std::size_t j = 0; j < laws.size(); ++j) {
+    const model::PressingReaction& reaction = laws[j].reaction;
+    if (!reaction.presses()) continue;
+    is_symmetric = false;
+    const auto places = std::visit([](const auto& u) { return u.places(); }, laws[j].u);
+    pressed_by_reactions_.push_back({j, place_of(places), {}});
+    for (const Index i : pressed_by_reactions_.back().u.place)
+      for (int r = 0; r < reaction.rows; ++r) entries.emplace_back(n + reaction.multiplier + r, i);
+  }
   saddle_.analyse(mechanism_.mass(), mechanism_.constraint_count(), std::move(entries), is_symmetric);
 
   const auto find_slots = [&](ElementPlace& place, std::size_t k, const std::vector<char>* pattern) {
@@ -129,6 +140,11 @@ void MechanismEquations::analyse() {
       for (int r = 0; r < friction.pressing_rows; ++r)
         place.slot.push_back(saddle_.slot(i, n + joint.first_row + friction.first_pressing_row + r));
     friction_places_.push_back(std::move(place));
+  }
+  for (PressedByReaction& pressed : pressed_by_reactions_) {
+    const model::PressingReaction& reaction = laws[pressed.law].reaction;
+    for (const Index i : pressed.u.place)
+      for (int r = 0; r < reaction.rows; ++r) pressed.slot.push_back(saddle_.slot(i, n + reaction.multiplier + r));
   }
 }
 

@@ -60,12 +60,12 @@ class ConstrainedStepper final : public Stepper {
     to.rubbing = from.rubbing;
     to.stuck_at = from.stuck_at;
     equations_.set_slip_floors(from, h, to);
+    equations_.set_reaction_lag(from.reaction_lag, h);
     equations_.begin_step(from);
     to.memory = from.memory;
     to.slider_force = from.slider_force;
     to.multiplier = from.multiplier;
     to.reaction_lag = from.reaction_lag;
-    equations_.set_reaction_lag(from.reaction_lag, h);
     predict(from, h);
     Iterates iterates{*this, from, h, to};
     switch (numerics::newton(iterates, rules_).outcome) {
@@ -231,6 +231,7 @@ class ConstrainedStepper final : public Stepper {
       if (!project(is_placed, to)) return fault(StepOutcome::singular);
       if (has_followed_reactions_) to.reaction_lag = (1.0 / (h * h)) * constraint_;
     }
+    equations_.set_reaction_lag(from.reaction_lag, h);
     equations_.move_laws(to);
     if (to.q.allFinite() && to.v.allFinite() && to.multiplier.allFinite() && to.memory.allFinite()) return {};
     return fault(StepOutcome::not_finite);

@@ -16,6 +16,16 @@ std::string counted(Index count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+/// A law at the limit that a reaction sets; null: there is none.
+const model::MechanismLaw* slipping_under_reaction(system::MechanismEquations& equations, const system::State& state) {
+  const auto& laws = equations.mechanism().model().laws;
+  equations.go_to(state, model::Side::right);
+  for (const model::MechanismLaw& law : laws)
+    if (law.reaction.presses() && equations.law_answer(static_cast<std::size_t>(law.index)).by_normal != 0.0)
+      return &law;
+  return nullptr;
+}
+
 }  // namespace
 
 std::string MechanismKind::summary() const {
@@ -30,22 +40,28 @@ std::string MechanismKind::summary() const {
   std::fill(without_locks.phase.begin(), without_locks.phase.end(), model::lock_open);
   const auto redundant = static_cast<Index>(make_consistent(*equations, without_locks).redundant.size());
   const Index left = mechanism_.size() - (constraints - redundant);
+  const Index stops =
+      std::count_if(model.locks.begin(), model.locks.end(), [](const auto& lock) { return lock.is_stop_part; });
+  std::string of_locks = counted(static_cast<Index>(model.locks.size()) - stops, "lock");
+  if (stops > 0) of_locks += ", " + counted(stops, "stop");
   return fmt::format("{}, {} ({} of drives, {} redundant), {} left, {}", counted(mechanism_.size(), "coordinate"),
                      counted(constraints, "constraint"), of_drives, redundant,
-                     left == 1 ? "1 degree of freedom" : fmt::format("{} degrees of freedom", left),
-                     counted(static_cast<Index>(model.locks.size()), "lock"));
+                     left == 1 ? "1 degree of freedom" : fmt::format("{} degrees of freedom", left), of_locks);
 }
 
 std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
   const model::Mechanism& model = mechanism_.model();
   std::vector<NonlinearPart> parts;
   for (const auto& law : model.laws)
-    parts.push_back({law.normal.formula || law.normal.depends_on_motion() ? NonlinearPart::Family::pressed_slider
-                                                                          : NonlinearPart::Family::law,
+    parts.push_back({law.normal.formula || law.normal.depends_on_motion() || law.reaction.presses()
+                         ? NonlinearPart::Family::pressed_slider
+                         : NonlinearPart::Family::law,
                      law.kind, law.name, law.depends_on_time()});
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
-  for (const auto& lock : model.locks) parts.push_back({NonlinearPart::Family::lock, "lock", lock.name});
+  for (const auto& lock : model.locks)
+    parts.push_back(lock.is_stop_part ? NonlinearPart{NonlinearPart::Family::stop, "stop", lock.name}
+                                      : NonlinearPart{NonlinearPart::Family::lock, "lock", lock.name});
   return parts;
 }
 
@@ -85,7 +101,8 @@ Equilibrium MechanismKind::find_equilibrium(const system::State& start, std::spa
   result.is_stable = found.is_stable;
   // Signs of pivots say nothing where loads have no potential, and the matrix is not symmetric.
   constexpr Index most = 600;
-  if (found.is_found && !equations.matrix().is_symmetric() && mechanism_.size() <= most)
+  if (found.is_found && !equations.matrix().is_symmetric() && mechanism_.size() <= most &&
+      !slipping_under_reaction(equations, result.state))
     result.is_stable = modes_about(equations, result.state, 1).is_stable;
   result.iterations = found.iterations;
   result.load_steps = found.load_steps;
@@ -102,7 +119,7 @@ Equilibrium MechanismKind::find_equilibrium(const system::State& start, std::spa
   } else if (found.is_found) {
     result.outcome = EquilibriumOutcome::found;
     for (std::size_t i = 0; i < locks.size(); ++i)
-      if (result.state.phase[i] != model::lock_open) result.holding.push_back(locks[i].name);
+      if (result.state.phase[i] != model::lock_open && !locks[i].is_stop_part) result.holding.push_back(locks[i].name);
   }
   result.statistics = {{"iterations", std::to_string(found.iterations)},
                        {"load_steps", std::to_string(found.load_steps)},
@@ -153,6 +170,11 @@ system::State MechanismKind::held_still(const system::State& given, std::vector<
 
 FreeMotions MechanismKind::free_motions(const system::State& state, Index /*limit*/, Index count) const {
   system::MechanismEquations equations(mechanism_);
+  if (const model::MechanismLaw* law = slipping_under_reaction(equations, state))
+    throw InvalidInput(
+        fmt::format("the {} \"{}\" is at the limit that a reaction sets, which small motions change: "
+                    "modes do not take that; give it a normal_load in numbers",
+                    law->kind, law->name));
   return modes_about(equations, state, count);
 }
 

@@ -8,6 +8,7 @@
 #include <rubato/integrate/mechanism/mechanism_events.hpp>
 #include <rubato/integrate/mechanism/mechanism_failure.hpp>
 #include <rubato/integrate/mechanism/mechanism_law_energy.hpp>
+#include <rubato/integrate/mechanism/mechanism_stop_energy.hpp>
 #include <rubato/integrate/nearest_approach.hpp>
 
 #include <fmt/format.h>
@@ -51,7 +52,11 @@ class MotionWatch final : public Observer {
     std::vector<std::string> told;
     for (std::size_t i = 0; i < locks_.size(); ++i) {
       const model::Lock& lock = mechanism_.model().locks[i];
-      const std::string what = fmt::format("the {} of \"{}\"", lock.is_latch ? "latch" : "stop", lock.name);
+      const std::string what = fmt::format("the {}\"{}\"",
+                                           lock.is_stop_part ? "stop "
+                                           : lock.is_latch   ? "latch of "
+                                                             : "stop of ",
+                                           lock.name);
       if (std::string line = locks_[i].told(what, lock.s.is_angle()); !line.empty()) told.push_back(std::move(line));
     }
     return told;
@@ -144,6 +149,8 @@ class MechanismMarch final : public StepMarch {
   std::vector<std::unique_ptr<EnergyPart>> energy_parts() override {
     std::vector<std::unique_ptr<EnergyPart>> parts;
     parts.push_back(std::make_unique<MechanismEnergy>(balance_, equations_, timeline_));
+    auto of_stops = std::make_unique<MechanismStopEnergy>(mechanism_);
+    if (of_stops->has_stops()) parts.push_back(std::move(of_stops));
     if (!mechanism_.model().laws.empty()) parts.push_back(std::make_unique<MechanismLawEnergy>(equations_));
     return parts;
   }

@@ -86,23 +86,32 @@ void refuse_unknown_reactions(const Location& where, system::MechanismEquations&
   equations.go_to(state, model::Side::right);
   equations.linearise({}, state.multiplier, motion, row);
   if (!equations.factorise() || equations.redundant_rows().empty()) return;
-  for (const auto& friction : mechanism.model().frictions)
-    for (Index i = 0; i < friction.pressing_rows; ++i) {
+  const auto require_alone = [&](const std::string& what, Index first, int rows, const char* remedy) {
+    for (int i = 0; i < rows; ++i) {
       // A row that can be moved alone is held by its joint alone.
-      const Index moved = mechanism.first_row(friction.joint) + friction.first_pressing_row + i;
+      const Index moved = first + i;
       motion.setZero();
       row.setZero();
       row[moved] = 1.0;
       equations.solve(motion, row);
       equations.constraint_rate(motion, rate);
       if (rate[moved] > 0.999) continue;
-      throw InvalidInput(
-          where,
-          fmt::format("the friction of \"{}\" follows a reaction that is not determined: what \"{}\" holds is held by "
-                      "other joints too, in shares that nothing tells; give the friction a \"preload\", or let one of "
-                      "the joints hold less (spherical or cylindrical for revolute)",
-                      friction.name, mechanism.rows()[static_cast<std::size_t>(moved)]));
+      throw InvalidInput(where,
+                         fmt::format("{} follows a reaction that is not determined: what \"{}\" holds is held by "
+                                     "other joints too, in shares that nothing tells; {}, or let one of "
+                                     "the joints hold less (spherical or cylindrical for revolute)",
+                                     what, mechanism.rows()[static_cast<std::size_t>(moved)], remedy));
     }
+  };
+  for (const auto& friction : mechanism.model().frictions)
+    if (friction.pressing_rows > 0)
+      require_alone(fmt::format("the friction of \"{}\"", friction.name),
+                    mechanism.first_row(friction.joint) + friction.first_pressing_row, friction.pressing_rows,
+                    "give the friction a \"preload\"");
+  for (const auto& law : mechanism.model().laws)
+    if (law.reaction.presses())
+      require_alone(fmt::format("the {} \"{}\"", law.kind, law.name), law.reaction.multiplier, law.reaction.rows,
+                    "give it a \"normal_load\" in numbers");
 }
 
 /// Of a law with a memory on a strut, whose spring would act from the length zero.
@@ -213,10 +222,11 @@ system::State set_in_motion(const Location& where, const system::Mechanism& mech
 }
 
 void settle_start(const Location& where, const system::Mechanism& mechanism, double duration, system::State& state) {
-  if (mechanism.model().frictions.empty()) return;
+  if (mechanism.model().frictions.empty() && !mechanism.has_followed_reactions()) return;
   system::MechanismEquations equations(mechanism);
   equations.set_duration(duration);
   refuse_unknown_reactions(where, equations, state);
+  if (mechanism.model().frictions.empty()) return;
   bool is_settled = find_phases_of_new_velocities(equations, state, 1e-6 * duration);
   while (is_settled && release_pulling_stop(mechanism, state))
     is_settled = find_phases_of_new_velocities(equations, state, 1e-6 * duration);

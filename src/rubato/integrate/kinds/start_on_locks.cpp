@@ -16,6 +16,8 @@ struct Approach {
 
   bool stands() const { return std::abs(rate) <= unknown_rate; }
   bool meets() const { return rate > unknown_rate; }
+  bool pushes = false;  // elastic, and pressed already
+
   bool presses() const { return stands() && second_rate > unknown_second; }
 };
 
@@ -33,6 +35,10 @@ Approach approach_of(system::MechanismEquations& equations, const system::State&
   equations.residual(force, gap);
   Approach result;
   result.rate = lock.sign * lock.s.rate(motion);
+  if (!lock.is_rigid()) {
+    constexpr double round_off = 1e-11;
+    result.pushes = lock.depth(motion) > round_off * (1.0 + std::abs(lock.at)) && lock.push(motion) > 0.0;
+  }
   result.second_rate = lock.sign * lock.s.second_rate(motion, acceleration.data() + 1);
   lock.s.slope(motion.q, slope.data());
   const std::vector<Index> places = lock.s.places();
@@ -96,7 +102,7 @@ ConsistentStart make_consistent_on_locks(system::MechanismEquations& equations, 
     return has_changed;
   };
   // A stop that takes velocities may lead others against theirs.
-  while (engage_where(phases, [](const Approach& approach) { return approach.meets(); })) {
+  while (engage_where(phases, [](const Approach& approach) { return approach.meets() || approach.pushes; })) {
     result = make_consistent(equations, phases);
     if (!result.is_consistent) return result;
   }

@@ -10,6 +10,7 @@ namespace rubato::integrate {
 ///
 ///   velocities that lead against a stop: it engages, and a rigid one takes them
 ///   velocities that lead away from it: it is open
+///   pressed already, and its spring and damper push: it is engaged
 ///   neither: it is engaged where it presses, and open where the parts accelerate away or nothing presses
 ///
 /// @param stands  the state is one at rest, of statics or modes: neither velocities nor the rates of drives decide

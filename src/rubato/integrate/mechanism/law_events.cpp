@@ -25,7 +25,11 @@ void MechanismLawEvents::note(std::size_t part, model::Law::Contact now, double 
 
 bool MechanismLawEvents::accepted(const system::State& before, const system::State& after) {
   if (watched_.empty()) return true;
-  if (!located_) equations_.go_to(after, model::Side::left);
+  if (!located_) {
+    equations_.set_reaction_lag(before.reaction_lag, after.t - before.t);  // as in the step
+    equations_.go_to(after, model::Side::left);
+    equations_.set_reaction_lag(before.reaction_lag, 0.0);
+  }
   for (std::size_t i = 0; i < watched_.size(); ++i) {
     const Index law = watched_[i].law;
     if (!located_) {

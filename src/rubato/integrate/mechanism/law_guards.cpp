@@ -58,7 +58,7 @@ model::LawPoint LawGuards::going_on(const model::MechanismLaw& law, double share
   there.rate += moment * there.acceleration;
   constexpr double little = 0.01;  // of the step: a force that begins later in it says nothing here
   const bool is_late = share > 0.5;
-  if (law.normal.depends_on_motion()) {
+  if (law.normal.depends_on_motion() || law.reaction.presses()) {
     const double beside = is_late ? share - little : share + little;
     const double change = pressing(law, beside, is_late ? model::Side::left : model::Side::right).rate - pressed.rate;
     pressed.rate += moment * (is_late ? -change : change) / (little * h);
@@ -76,6 +76,7 @@ LawGuards::Pressing LawGuards::pressing(const model::MechanismLaw& law, double s
     return of_stop(*law.stop, state.phase[index] != model::lock_open, place(law.stop->s.of, share));
   }
   if (law.pressing) return of_law(*law.pressing, share, side);
+  if (law.reaction.presses()) return of_reaction(law.reaction, share);
   if (!law.normal.formula) return {law.normal.value, 0.0, 0.0};
   const double t = from_->t + share * (to_->t - from_->t);
   const numerics::TimeDerivatives d = side == model::Side::right ? law.normal.formula->derivatives_from_right(t)
@@ -90,6 +91,21 @@ LawGuards::Pressing LawGuards::of_stop(const model::Lock& stop, bool is_engaged,
   if (!is_engaged) return {std::min(0.0, spring), spring_rate, 0.0};
   return {spring + stop.damping * stop.sign * place.rate, spring_rate + stop.damping * stop.sign * place.acceleration,
           0.0};
+}
+
+// Of the multipliers of both ends, as the step has them.
+LawGuards::Pressing LawGuards::of_reaction(const model::PressingReaction& reaction, double share) const {
+  const double h = to_->t - from_->t;
+  double then = 0.0, now = 0.0;
+  for (int r = 0; r < reaction.rows; ++r) {
+    const Index row = reaction.multiplier + r;
+    const double lag = from_->reaction_lag.size() > row ? h * from_->reaction_lag[row] : 0.0;
+    then += std::pow(from_->multiplier[row] + lag, 2);
+    now += std::pow(to_->multiplier[row] + lag, 2);
+  }
+  then = std::sqrt(then);
+  now = std::sqrt(now);
+  return {then + share * (now - then), (now - then) / h, 0.0};
 }
 
 LawGuards::Pressing LawGuards::of_law(const model::MechanismLaw& law, double share, model::Side side) {

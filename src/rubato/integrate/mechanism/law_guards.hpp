@@ -36,6 +36,7 @@ class LawGuards {
   model::LawPoint going_on(const model::MechanismLaw& law, double share, double moment);
   Pressing pressing(const model::MechanismLaw& law, double share, model::Side side);
   Pressing of_stop(const model::Lock& stop, bool is_engaged, const Place& place) const;
+  Pressing of_reaction(const model::PressingReaction& reaction, double share) const;
   Pressing of_law(const model::MechanismLaw& law, double share, model::Side side);
   double value(const model::MechanismLaw& law, double share);
 

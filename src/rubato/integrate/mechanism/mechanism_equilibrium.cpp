@@ -20,7 +20,12 @@ class Search {
     found_.state = given;
     std::fill(found_.state.rubbing.begin(), found_.state.rubbing.end(), model::friction_free);
     found_.state.v = found_.state.acceleration = found_.state.auxiliary_acceleration = Vector::Zero(n);
-    found_.state.multiplier = Vector::Zero(c);
+    // Laws on which reactions press begin with those that are known: without any they would hold nothing, and
+    // Newton's method would go past where they hold.
+    const auto& laws = mechanism_.model().laws;
+    const bool is_pressed =
+        std::any_of(laws.begin(), laws.end(), [](const auto& law) { return law.reaction.presses(); });
+    if (!is_pressed || given.multiplier.size() != c) found_.state.multiplier = Vector::Zero(c);
     force_.resize(n);
     product_.resize(n);
     constraint_.resize(c);
@@ -157,7 +162,7 @@ class Search {
 
   /// The residual under a share of the loads, and the matrix  K + shift M. Returns the largest force that is left.
   double linearise(double shift, double load = 1.0) {
-    const system::MechanismEquations::Weights weights{shift, 0.0, 1.0, scale_};
+    const system::MechanismEquations::Weights weights{shift, 0.0, 1.0, scale_, true};
     equations_.go_to_end(found_.state, model::Side::right);
     equations_.linearise(weights, found_.state.multiplier, force_, constraint_);
     if (load != 1.0) equations_.scale_loads(load, weights, force_);

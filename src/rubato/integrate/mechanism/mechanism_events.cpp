@@ -22,6 +22,15 @@ std::vector<int> places_of(const std::vector<model::Lock>& locks) {
 
 }  // namespace
 
+namespace {
+
+Change change_of(const model::Lock& lock, bool has_engaged) {
+  if (lock.is_stop_part) return has_engaged ? Change::closes : Change::opens;
+  return has_engaged ? Change::locks : Change::lets_go;
+}
+
+}  // namespace
+
 Events events_of(std::span<const LockEvent> events, const system::Mechanism& mechanism, const system::State* start) {
   const auto& locks = mechanism.model().locks;
   Events result;
@@ -30,14 +39,14 @@ Events events_of(std::span<const LockEvent> events, const system::Mechanism& mec
   for (const auto& friction : mechanism.model().frictions) result.parts.push_back(friction.label());
   if (!result.places.empty()) result.places.resize(result.parts.size(), 0);
   for (std::size_t i = 0; start && i < locks.size(); ++i)
-    if (start->phase[i] != model::lock_open) result.add({start->t, i, Change::locks});
+    if (start->phase[i] != model::lock_open) result.add({start->t, i, change_of(locks[i], true)});
   result.at_start = result.all.size();
   for (const LockEvent& event : events) {
     const bool is_lock = event.friction < 0;
     const auto part =
         is_lock ? static_cast<std::size_t>(event.lock) : locks.size() + static_cast<std::size_t>(event.friction);
-    const Change change = is_lock ? (event.has_engaged ? Change::locks : Change::lets_go)
-                                  : (event.has_engaged ? Change::sticks : Change::slips);
+    const Change change =
+        is_lock ? change_of(locks[part], event.has_engaged) : (event.has_engaged ? Change::sticks : Change::slips);
     result.add({event.t, part, change, event.energy_lost});
   }
   return result;

@@ -49,7 +49,7 @@ MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, doub
     row_.push_back(lock.is_rigid() ? mechanism.first_row(lock.joint) : -1);
   for (const auto& lock : mechanism.model().locks) {
     const auto& frictions = mechanism.model().frictions;
-    const auto is_of_it = [&](const model::JointFriction& friction) { return friction.name == lock.name; };
+    const auto is_of_it = [&](const model::JointFriction& friction) { return friction.name == lock.joint_name(); };
     const auto found = std::find_if(frictions.begin(), frictions.end(), is_of_it);
     friction_of_.push_back(found == frictions.end() ? -1 : static_cast<int>(found - frictions.begin()));
   }

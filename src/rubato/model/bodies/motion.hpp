@@ -29,6 +29,7 @@ struct Motion {
   const int* rubbing = nullptr;      ///< of the joints with friction: see FrictionPhase
   const double* stuck_at = nullptr;  ///< where they last stuck [rad] or [m]
   LawHistory laws = {};
+  const double* multiplier = nullptr;  ///< of the constraints [c]: reactions that press on laws
 };
 
 inline constexpr int plane_numbers = 3, space_numbers = 7;

@@ -30,28 +30,43 @@ void fields(auto& visit, Like<DamperDescription> auto& damper) {
 
 void fields(auto& visit, Like<SliderDescription> auto& slider) {
   visit.numbered_name("slider", slider.name, slider.where, {.says = "heads its columns in the results"});
-  visit.between("between", slider.between, slider.between_where, {.required = true});
+  visit.between("between", slider.between, slider.between_where, {});
+  visit.text("joint", slider.joint, {.says = "instead of between: it rubs on what this joint leaves free"});
+  visit.where_given(slider.joint_where, "joint");
+  visit.exactly_one_of({"between", "joint"});
+  visit.check([&](auto& reader) {
+    if (!slider.joint.empty()) reader.refuse_beside("joint", {"between"});
+    if (slider.joint.empty() && slider.between[0].empty()) reader.refuse_to_lack("between");
+  });
   visit.quantity("stiffness", slider.stiffness,
                  {.required = true, .unit = "N/m", .says = "kT", .range = Range::positive});
   const bool is_law = slider.is_law();
   const Role role = is_law ? Role::structure : Role::limit;
   visit.quantity("friction_coefficient", slider.friction_coefficient,
                  {.required = true, .unit = "-", .says = "mu", .role = role});
-  visit.load_or_part("normal_load", slider.normal_load, is_law,
-                     {.required = true,
-                      .unit = "N",
-                      .says = "N, which may use t; or { law = \"NAME\" }, the force of a stop or of another law",
-                      .role = role},
-                     [&](auto& inner) {
-                       inner.text("law", slider.normal_law,
-                                  {.required = true, .says = "the stop or law whose force presses"});
-                       inner.where_given(slider.normal_law_where, "law");
-                     });
+  visit.load_or_part(
+      "normal_load", slider.normal_load, is_law,
+      {.required = true,
+       .unit = "N",
+       .says = "N, which may use t; \"reaction\", of the joint that it rubs on; or { law = \"NAME\" }, the "
+               "force of a stop or of another law, or \"JOINT.reaction\"",
+       .role = role},
+      [&](auto& inner) {
+        inner.text("law", slider.normal_law, {.required = true, .says = "the stop or law whose force presses"});
+        inner.where_given(slider.normal_law_where, "law");
+      });
 }
 
 void fields(auto& visit, Like<StopDescription> auto& stop) {
   visit.numbered_name("stop", stop.name, stop.where, {.says = "heads its columns in the results"});
-  visit.between("between", stop.between, stop.between_where, {.required = true});
+  visit.between("between", stop.between, stop.between_where, {});
+  visit.text("joint", stop.joint, {.says = "instead of between: u is what this joint leaves free"});
+  visit.where_given(stop.joint_where, "joint");
+  visit.exactly_one_of({"between", "joint"});
+  visit.check([&](auto& reader) {
+    if (!stop.joint.empty()) reader.refuse_beside("joint", {"between"});
+    if (stop.joint.empty() && stop.between[0].empty()) reader.refuse_to_lack("between");
+  });
   visit.quantity("gap", stop.gap,
                  {.required = true,
                   .unit = "m",

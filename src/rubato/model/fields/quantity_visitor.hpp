@@ -18,6 +18,7 @@ class QuantityVisitor {
     if (quantity) take_(*quantity, key.role, false);
   }
   void load_or_part(const char*, const Quantity& quantity, bool uses_time, const Key& key, const auto&) const {
+    if (quantity.expression == "reaction") return;  // a word: of the joint of a slider
     take_(quantity, key.role, uses_time);
   }
   void formula(const char*, const Quantity& quantity, const Key& key) const { take_(quantity, key.role, true); }

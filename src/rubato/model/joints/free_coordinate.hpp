@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/joints/number_difference.hpp>
 #include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/model/joints/space_coordinate.hpp>
 
@@ -9,15 +10,17 @@
 
 namespace rubato::model {
 
-/// The coordinate s that a joint leaves free, in the plane or in space: what locks and friction watch.
+/// The coordinate s that a joint leaves free, in the plane or in space, or a difference of two coordinates: what locks
+/// and friction watch.
 struct FreeCoordinate {
   static constexpr int most_places = SpaceCoordinate::tangent_size;
 
-  std::variant<PlaneCoordinate, SpaceCoordinate> of;
+  std::variant<PlaneCoordinate, SpaceCoordinate, NumberDifference> of;
 
   FreeCoordinate() = default;
   FreeCoordinate(const PlaneCoordinate& s) : of(s) {}
   FreeCoordinate(const SpaceCoordinate& s) : of(s) {}
+  FreeCoordinate(const NumberDifference& s) : of(s) {}
 
   bool is_angle() const {
     return std::visit([](const auto& s) { return s.is_angle(); }, of);

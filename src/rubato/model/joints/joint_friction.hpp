@@ -88,7 +88,7 @@ class StickingJoint final : public Joint {
   StickingJoint(std::string name, Coordinate s, int friction)
       : Joint(std::move(name)), s_(std::move(s)), friction_(friction) {
     places_ = s_.places();
-    row_names_ = {s_.kind == Coordinate::Kind::angle ? "friction_moment" : "friction_force"};
+    row_names_ = {s_.is_angle() ? "friction_moment" : "friction_force"};
     curvature_.resize(places_.size() * places_.size());
   }
   std::unique_ptr<Joint> clone() const override { return std::make_unique<StickingJoint>(*this); }

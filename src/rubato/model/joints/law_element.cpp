@@ -2,6 +2,7 @@
 #include <rubato/model/joints/law_element.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rubato::model {
 namespace {
@@ -44,14 +45,19 @@ LawAnswer MechanismLaw::answer(const Motion& motion) const {
 double MechanismLaw::normal_force(const Motion& motion) const {
   if (pressing) return pressing->answer(motion).force;
   if (stop) return pressing_force(*stop, normal.stop, motion).force;
+  if (reaction.presses()) return reaction.force(motion);
   return normal.at(motion.t, motion.side);
 }
 
+double PressingReaction::force(const Motion& motion) const {
+  double squared = 0.0;
+  for (int r = 0; r < rows; ++r) squared += motion.multiplier[multiplier + r] * motion.multiplier[multiplier + r];
+  return std::sqrt(squared);
+}
+
 LawAnswer pressing_force(const Lock& stop, Index index, const Motion& motion) {
-  const double depth = stop.sign * (stop.s.value(motion.q) - stop.at), spring = stop.stiffness * depth;
-  if (motion.phase[index] == lock_open) return {std::min(0.0, spring)};
-  return {spring + stop.sign * stop.damping * stop.s.rate(motion), stop.sign * stop.stiffness,
-          stop.sign * stop.damping};
+  if (motion.phase[index] == lock_open) return {std::min(0.0, stop.stiffness * stop.depth(motion))};
+  return {stop.push(motion), stop.sign * stop.stiffness, stop.sign * stop.damping};
 }
 
 std::unique_ptr<Element> make_law_element(const MechanismLaw& law) {

@@ -16,6 +16,16 @@ namespace rubato::model {
 /// Where a law acts in a mechanism: on the coordinate that a joint leaves free, or between two coordinates of nodes.
 using LawCoordinate = std::variant<PlaneCoordinate, SpaceCoordinate, NumberDifference>;
 
+/// The reaction of a joint that presses on a law: the norm of some of its multipliers.
+struct PressingReaction {
+  int joint = -1;        ///< among the mechanism's joints; -1: none presses
+  int rows = 0;          ///< so many of its rows press, from the first on
+  Index multiplier = 0;  ///< of the first, among those of all joints
+
+  bool presses() const { return joint >= 0; }
+  double force(const Motion& motion) const;  ///< [N]
+};
+
 /// A law of a mechanism. On a joint -force acts on the second part; between two coordinates -force acts on the first.
 struct MechanismLaw {
   std::string name;
@@ -28,6 +38,7 @@ struct MechanismLaw {
   NormalForce normal = {};                                 ///< of a law that takes one; its stop is a lock
   std::shared_ptr<const MechanismLaw> pressing = nullptr;  ///< the law whose force presses, instead
   std::shared_ptr<const Lock> stop = nullptr;              ///< the stop whose force presses, instead
+  PressingReaction reaction = {};                          ///< the reaction that presses, instead
 
   bool is_angle() const {
     return std::visit([](const auto& of) { return of.is_angle(); }, u);

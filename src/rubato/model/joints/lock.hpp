@@ -18,9 +18,12 @@ enum LockPhase : int {
 ///   engaged, with a stiffness: the force -stiffness (s - at) - damping s' on s
 ///   engaged, without: the constraint s = at
 ///
-/// A stop lets go where its force would pull; a latch never does, and ends the joint's drive.
+/// A stop lets go where its force would pull; a latch never does, and ends the joint's drive. A [[stop]] is such a lock
+/// with a stiffness, under a name of its own, which may also act between two coordinates.
 struct Lock {
-  std::string name;  ///< of the joint
+  std::string name;           ///< of the joint, or of the [[stop]]
+  bool is_stop_part = false;  ///< a [[stop]]
+  std::string on_joint = {};  ///< of a [[stop]]: the joint on whose coordinate it acts; empty: between two coordinates
   FreeCoordinate s;
   bool is_latch = false;
   double at = 0.0;               ///< [rad] or [m]
@@ -31,6 +34,11 @@ struct Lock {
   int joint = -1;                ///< the constraint that holds it, among the mechanism's; -1: it has a stiffness
 
   bool is_rigid() const { return joint >= 0; }
+  /// On whose coordinate it acts; empty: on that of none.
+  const std::string& joint_name() const { return is_stop_part ? on_joint : name; }
+  /// Of one with a stiffness: how far s is beyond it [m] or [rad], and the force that its spring and damper make there.
+  double depth(const Motion& motion) const { return sign * (s.value(motion.q) - at); }
+  double push(const Motion& motion) const { return stiffness * depth(motion) + damping * sign * s.rate(motion); }
 };
 
 }  // namespace rubato::model

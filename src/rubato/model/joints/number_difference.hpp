@@ -1,9 +1,12 @@
 #pragma once
 
 #include <rubato/model/bodies/motion.hpp>
+#include <rubato/model/joints/plane_coordinate.hpp>
 #include <rubato/model/joints/plane_spring.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace rubato::model {
@@ -29,6 +32,16 @@ struct NumberDifference {
   }
   void curvature(const double*, double, double* curvature) const { std::fill(curvature, curvature + 4, 0.0); }
   double rate(const Motion& motion) const { return motion.v[first.place] - motion.v[second.place]; }
+  double second_rate(const Motion&, const double* acceleration) const {
+    return acceleration[first.place] - acceleration[second.place];
+  }
 };
+
+/// As those of a PlaneCoordinate.
+std::unique_ptr<Element> make_joint_spring(std::string name, const NumberDifference& s, double stiffness, double rest,
+                                           const AtLock& when = {});
+std::unique_ptr<Element> make_joint_damper(std::string name, const NumberDifference& s, double damping,
+                                           const AtLock& when = {});
+std::unique_ptr<Joint> make_lock_joint(std::string name, const NumberDifference& s, double at, int lock);
 
 }  // namespace rubato::model

@@ -81,19 +81,26 @@ StopColumns::StopColumns(const system::LocallyNonlinear& system) : system_(syste
   }
 }
 
+void add_stop_blocks(const std::vector<std::string>& stops, bool is_rotation, TableLayout& layout) {
+  if (stops.empty()) return;
+  const char* const overclosed = "how far a gap is overclosed, 0 where it is open";
+  if (is_rotation) {
+    layout.blocks.push_back(
+        {"moment", "N m", "moment of a stop; -moment acts on the first coordinate", "rotational_stop", stops});
+    layout.blocks.push_back({"penetration_angle", "rad", overclosed, "rotational_stop", stops});
+  } else {
+    layout.blocks.push_back({"force", "N", "force of a stop; -force acts on the first coordinate", "stop", stops});
+    layout.blocks.push_back({"penetration", "m", overclosed, "stop", stops});
+  }
+}
+
 void StopColumns::add(TableLayout& layout) const {
-  const auto add_kind = [&](const std::vector<Index>& stops, const Names& force, const Names& penetration,
-                            const char* dimension) {
-    if (stops.empty()) return;
+  for (const bool is_rotation : {false, true}) {
     std::vector<std::string> labels;
-    for (const Index j : stops) labels.push_back(system_.stops()[static_cast<std::size_t>(j)].name);
-    layout.blocks.push_back({force.variable, force.unit, force.description, dimension, labels});
-    layout.blocks.push_back({penetration.variable, penetration.unit, penetration.description, dimension, labels});
-  };
-  add_kind(of_displacements_, {"force", "N", "force of a stop; -force acts on the first coordinate"},
-           {"penetration", "m", "how far a gap is overclosed, 0 where it is open"}, "stop");
-  add_kind(of_rotations_, {"moment", "N m", "moment of a stop; -moment acts on the first coordinate"},
-           {"penetration_angle", "rad", "how far a gap is overclosed, 0 where it is open"}, "rotational_stop");
+    for (const Index j : is_rotation ? of_rotations_ : of_displacements_)
+      labels.push_back(system_.stops()[static_cast<std::size_t>(j)].name);
+    add_stop_blocks(labels, is_rotation, layout);
+  }
 }
 
 void StopColumns::append(const system::State& state, std::vector<double>& row) {

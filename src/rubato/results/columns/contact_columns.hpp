@@ -31,6 +31,9 @@ class SliderColumns : public ColumnGroup {
   std::vector<Index> of_displacements_, of_rotations_;
 };
 
+/// The blocks of some stops: `force` and `penetration`, of those between rotations `moment` and `penetration_angle`.
+void add_stop_blocks(const std::vector<std::string>& stops, bool is_rotation, TableLayout& layout);
+
 /// Columns of the stops: `force` and `penetration`, of those between rotations `moment` and `penetration_angle`.
 class StopColumns final : public ColumnGroup {
  public:

@@ -9,9 +9,9 @@ LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
     : system_(system), in_motion_(in_motion), dissipated_(Vector::Zero(system.law_count())) {
   for (Index j = 0; j < system.law_count(); ++j) {
     (system.is_law_of_rotations(j) ? of_rotations_ : of_displacements_).push_back(j);
+    if (system.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness() > 0.0)
+      (system.is_law_of_rotations(j) ? friction_of_rotations_ : friction_of_displacements_).push_back(j);
   }
-  for (const Index j : order())
-    if (system.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness() > 0.0) of_friction_.push_back(j);
 }
 
 void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout) {
@@ -28,16 +28,22 @@ void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool
     layout.blocks.push_back({"dissipated", "J", "dissipated by a law since the start", dimension, laws});
 }
 
-void add_friction_blocks(const std::vector<std::string>& laws, TableLayout& layout) {
+void add_friction_blocks(const std::vector<std::string>& laws, bool is_rotation, TableLayout& layout) {
   if (laws.empty()) return;
-  layout.blocks.push_back({"slip", "m", "slip of a law of friction, u - force/kT", "law_of_friction", laws});
-  layout.blocks.push_back({"normal_force", "N", "what presses on it, 0 where it is open", "law_of_friction", laws});
+  const char* dimension = is_rotation ? "rotational_law_of_friction" : "law_of_friction";
+  if (is_rotation)
+    layout.blocks.push_back({"slip_angle", "rad", "slip of a law of friction, u - moment/kT", dimension, laws});
+  else
+    layout.blocks.push_back({"slip", "m", "slip of a law of friction, u - force/kT", dimension, laws});
+  layout.blocks.push_back({"normal_force", "N", "what presses on it, 0 where it is open", dimension, laws});
 }
 
 void LawColumns::add(TableLayout& layout) const {
   for (const bool is_rotation : {false, true})
     add_law_blocks(names_of(is_rotation ? of_rotations_ : of_displacements_), is_rotation, in_motion_, layout);
-  add_friction_blocks(names_of(of_friction_), layout);
+  for (const bool is_rotation : {false, true})
+    add_friction_blocks(names_of(is_rotation ? friction_of_rotations_ : friction_of_displacements_), is_rotation,
+                        layout);
 }
 
 void LawColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {
@@ -75,12 +81,13 @@ void LawColumns::append_since(const system::State& before, const system::State& 
       row.push_back(dissipated_[j] +
                     (before.t == state.t ? 0.0 : integrate::dissipated_by_law(system_, j, before, state)));
   }
-  for (const Index j : of_friction_)
-    row.push_back(system_.relative_displacement(first + j, state.q) -
-                  state.slider_force[first + j] /
-                      system_.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness());
-  for (const Index j : of_friction_)
-    row.push_back(std::max(0.0, system_.law_point(j, state, model::Side::right).normal));
+  for (const auto* laws : {&friction_of_displacements_, &friction_of_rotations_}) {
+    for (const Index j : *laws)
+      row.push_back(system_.relative_displacement(first + j, state.q) -
+                    state.slider_force[first + j] /
+                        system_.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness());
+    for (const Index j : *laws) row.push_back(std::max(0.0, system_.law_point(j, state, model::Side::right).normal));
+  }
 }
 
 }  // namespace rubato::results

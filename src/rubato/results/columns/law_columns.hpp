@@ -11,12 +11,13 @@ namespace rubato::results {
 /// The blocks of some laws: `force` and `displacement`, of those on angles `moment` and `angle`, and `dissipated`.
 void add_law_blocks(const std::vector<std::string>& laws, bool is_rotation, bool has_dissipated, TableLayout& layout);
 
-/// Of laws of friction `slip` and `normal_force`, for those that there are.
-void add_friction_blocks(const std::vector<std::string>& laws, TableLayout& layout);
+/// Of laws of friction `slip` and `normal_force`, of those on angles `slip_angle` and `normal_force`, for those that
+/// there are.
+void add_friction_blocks(const std::vector<std::string>& laws, bool is_rotation, TableLayout& layout);
 
 /// Columns of the laws beside sliders and stops: `force` and `displacement`, of those between rotations `moment` and
-/// `angle`; in a motion `dissipated` since its start as well; of laws of friction `slip` and `normal_force` behind
-/// them.
+/// `angle`; in a motion `dissipated` since its start as well; of laws of friction `slip` (or `slip_angle`) and
+/// `normal_force` behind them.
 class LawColumns final : public ColumnGroup {
  public:
   /// @param in_motion  whether steps are booked
@@ -38,7 +39,7 @@ class LawColumns final : public ColumnGroup {
 
   const system::LocallyNonlinear& system_;
   bool in_motion_;
-  std::vector<Index> of_displacements_, of_rotations_, of_friction_;
+  std::vector<Index> of_displacements_, of_rotations_, friction_of_displacements_, friction_of_rotations_;
   Vector dissipated_;  // by each law in the steps that are booked [J]
 };
 

@@ -6,6 +6,7 @@
 #include <rubato/results/columns/joint_reactions.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
 #include <rubato/results/columns/mechanism_law_columns.hpp>
+#include <rubato/results/columns/mechanism_stop_columns.hpp>
 
 namespace rubato::results {
 
@@ -19,6 +20,7 @@ ColumnGroups columns_of_motion(system::MechanismEquations& equations, const std:
   groups.push_back(std::make_unique<JointFrictions>(equations));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
   groups.push_back(std::make_unique<BushingForces>(mechanism));
+  groups.push_back(std::make_unique<MechanismStopColumns>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, true));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, ""));
   return groups;
@@ -34,6 +36,7 @@ ColumnGroups columns_of_equilibrium(system::MechanismEquations& equations, const
   groups.push_back(std::make_unique<JointReactions>(mechanism));
   groups.push_back(std::make_unique<JointLaws>(mechanism));
   groups.push_back(std::make_unique<BushingForces>(mechanism));
+  groups.push_back(std::make_unique<MechanismStopColumns>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, false));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, title));
   return groups;

@@ -6,23 +6,24 @@ namespace rubato::results {
 MechanismLawColumns::MechanismLawColumns(system::MechanismEquations& equations, bool in_motion)
     : equations_(equations), in_motion_(in_motion) {
   const auto& laws = equations.mechanism().model().laws;
-  for (std::size_t j = 0; j < laws.size(); ++j) (laws[j].is_angle() ? turning_ : sliding_).push_back(j);
-  for (const auto* of : {&sliding_, &turning_})
-    for (const std::size_t j : *of)
-      if (laws[j].law->sticking_stiffness() > 0.0) of_friction_.push_back(j);
+  for (std::size_t j = 0; j < laws.size(); ++j) {
+    (laws[j].is_angle() ? turning_ : sliding_).push_back(j);
+    if (laws[j].law->sticking_stiffness() > 0.0)
+      (laws[j].is_angle() ? rubbing_turning_ : rubbing_sliding_).push_back(j);
+  }
   dissipated_ = since_ = Vector::Zero(static_cast<Index>(laws.size()));
 }
 
 void MechanismLawColumns::add(TableLayout& layout) const {
-  for (const bool is_rotation : {false, true}) {
+  const auto names_of = [&](const std::vector<std::size_t>& laws) {
     std::vector<std::string> names;
-    for (const std::size_t j : is_rotation ? turning_ : sliding_)
-      names.push_back(equations_.mechanism().model().laws[j].name);
-    add_law_blocks(names, is_rotation, in_motion_, layout);
-  }
-  std::vector<std::string> names;
-  for (const std::size_t j : of_friction_) names.push_back(equations_.mechanism().model().laws[j].name);
-  add_friction_blocks(names, layout);
+    for (const std::size_t j : laws) names.push_back(equations_.mechanism().model().laws[j].name);
+    return names;
+  };
+  for (const bool is_rotation : {false, true})
+    add_law_blocks(names_of(is_rotation ? turning_ : sliding_), is_rotation, in_motion_, layout);
+  for (const bool is_rotation : {false, true})
+    add_friction_blocks(names_of(is_rotation ? rubbing_turning_ : rubbing_sliding_), is_rotation, layout);
 }
 
 void MechanismLawColumns::book(const system::State& before, const system::State& after) {
@@ -47,10 +48,12 @@ void MechanismLawColumns::append_since(const system::State& before, const system
     }
   }
   const auto& laws_of_model = equations_.mechanism().model().laws;
-  for (const std::size_t j : of_friction_)
-    row.push_back(equations_.law_displacement(j) -
-                  equations_.law_force(j) / laws_of_model[j].law->sticking_stiffness());
-  for (const std::size_t j : of_friction_) row.push_back(equations_.law_normal(j));
+  for (const auto* laws : {&rubbing_sliding_, &rubbing_turning_}) {
+    for (const std::size_t j : *laws)
+      row.push_back(equations_.law_displacement(j) -
+                    equations_.law_force(j) / laws_of_model[j].law->sticking_stiffness());
+    for (const std::size_t j : *laws) row.push_back(equations_.law_normal(j));
+  }
 }
 
 }  // namespace rubato::results

@@ -23,7 +23,7 @@ class MechanismLawColumns final : public ColumnGroup {
  private:
   system::MechanismEquations& equations_;
   bool in_motion_;
-  std::vector<std::size_t> sliding_, turning_, of_friction_;
+  std::vector<std::size_t> sliding_, turning_, rubbing_sliding_, rubbing_turning_;
   Vector dissipated_, since_;  // by each law in the steps that are booked, and in a part of the next [J]
 };
 
