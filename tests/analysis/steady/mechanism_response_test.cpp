@@ -270,6 +270,17 @@ TEST(MechanismResponses, AreRefusedForWhatSmallMotionsDoNotCarry) {
   EXPECT_NE(message_of(with("drive = \"0.1*sin(t)\"")).find("the drive of \"pivot\" moves it"), std::string::npos);
   const std::string follower = replaced(swinging_bob, "on = \"bob.x\"", "on = \"bob.x\"\nfollowing = true");
   EXPECT_NE(message_of(follower + response_about_rest("[2.0]")).find("turns with its body"), std::string::npos);
+  // Also where the value in the study, which the response replaces, would let it stand still.
+  EXPECT_NE(message_of(replaced(follower, "Omega = 1.0", "Omega = 0.0") + response_about_rest("[2.0]"))
+                .find("turns with its body"),
+            std::string::npos);
+  const std::string still = replaced(swinging_bob, "[[force]]", R"(
+[[force]]
+on = "bob.y"
+amplitude = 3.0
+angular_frequency = "0*Omega"
+[[force]])");
+  EXPECT_NE(message_of(still + response_about_rest("[2.0]")).find("would move the equilibrium"), std::string::npos);
   const std::string pushed = replaced(swinging_bob, "[[force]]", R"(
 [[body]]
 name = "tip"

@@ -200,7 +200,7 @@ void require_about(const Description& description, const StudyInput& input, cons
 std::function<bool(std::size_t)> model_dependence(const StudyInput& input, const FrequencyResponsePlan& plan) {
   if (!input.kind.is_constrained())
     return [&](std::size_t parameter) { return plan.dependence.reaches(parameter, Role::structure); };
-  auto still = std::make_shared<const model::StudyDescription>(without_harmonic_loads(input.study, input.parameters));
+  auto still = std::make_shared<const model::StudyDescription>(without_harmonic_loads(input.study));
   const StudyInput at_rest{*still, input.overrides, input.parameters, input.kind};
   std::vector<std::size_t> varied = plan.sweep.places();
   varied.push_back(plan.excitation);

@@ -16,12 +16,12 @@
 namespace rubato::analysis {
 namespace {
 
-/// Null: it does not swing.
-const model::HarmonicDescription* swinging(const model::ForceDescription& force, const numerics::Parameters& values) {
+/// Null: it does not swing. A frequency by a formula is one that the points of the response give.
+const model::HarmonicDescription* swinging(const model::ForceDescription& force) {
   const auto* harmonic = std::get_if<model::HarmonicDescription>(&force.law);
   if (!harmonic) return nullptr;
-  const std::string part = fmt::format("the force on \"{}\": angular_frequency", force.on);
-  return model::evaluate(harmonic->angular_frequency, values, part) != 0.0 ? harmonic : nullptr;
+  const model::Quantity& frequency = harmonic->angular_frequency;
+  return frequency.value != 0.0 || !frequency.expression.empty() ? harmonic : nullptr;
 }
 
 model::HarmonicLaw law_of(const model::HarmonicDescription& harmonic, const numerics::Parameters& values,
@@ -40,13 +40,19 @@ std::vector<system::ModelLoad> loads_on(const model::ModelDescription& model, co
   const auto& names = about.coordinates;
   for (std::size_t j = 0; j < model.forces.size(); ++j) {
     const model::ForceDescription& force = model.forces[j];
-    const auto* harmonic = swinging(force, values);
+    const auto* harmonic = swinging(force);
     if (!harmonic) continue;
     const auto found = std::find(names.begin(), names.end(), force.on);
     if (found == names.end())
       throw InvalidInput(force.where, fmt::format("the force on \"{}\" acts on no coordinate that moves", force.on));
     system::ModelLoad load;
-    load.term.law = law_of(*harmonic, values, fmt::format("the force on \"{}\"", force.on));
+    const model::HarmonicLaw law = law_of(*harmonic, values, fmt::format("the force on \"{}\"", force.on));
+    if (law.angular_frequency == 0.0)
+      throw InvalidInput(force.where,
+                         fmt::format("the force on \"{}\" has a frequency of zero here (\"{}\"), and would move the "
+                                     "equilibrium; say what does not swing as an expression without t",
+                                     force.on, harmonic->angular_frequency.expression));
+    load.term.law = law;
     load.law = static_cast<int>(j);
     const auto row = about.motions.basis.row(found - names.begin());
     for (Index i = 0; i < row.size(); ++i) {
@@ -76,7 +82,7 @@ std::vector<std::string> warnings_of(const integrate::MotionsAboutRest& about, c
 }
 
 SteadyModel about_rest(const model::StudyDescription& study, const numerics::Parameters& values) {
-  auto about = integrate::motions_about_rest(without_harmonic_loads(study, values).model, values);
+  auto about = integrate::motions_about_rest(without_harmonic_loads(study).model, values);
   if (const std::string failure = complaint(about.found); !failure.empty())
     throw InvalidInput(fmt::format("without its harmonic loads, {}", failure));
   if (!about.found.is_stable)
@@ -172,12 +178,11 @@ SteadyModel build_steady_model(const model::StudyDescription& study, const numer
   return {build_structure(study, values), std::nullopt};
 }
 
-model::StudyDescription without_harmonic_loads(const model::StudyDescription& study,
-                                               const numerics::Parameters& values) {
+model::StudyDescription without_harmonic_loads(const model::StudyDescription& study) {
   model::StudyDescription still = study;
   auto& forces = still.model.forces;
   forces.erase(std::remove_if(forces.begin(), forces.end(),
-                              [&](const model::ForceDescription& force) { return swinging(force, values) != nullptr; }),
+                              [](const model::ForceDescription& force) { return swinging(force) != nullptr; }),
                forces.end());
   return still;
 }
@@ -207,7 +212,7 @@ void refuse_beyond_small_motions(const StudyInput& input, const Location& where,
   const auto& names = input.kind.system().coordinates();
   const bool in_space = std::any_of(names.begin(), names.end(), [](const auto& name) { return name.ends_with(".z"); });
   for (const model::ForceDescription& force : model.forces) {
-    if (!swinging(force, input.parameters)) continue;
+    if (!swinging(force)) continue;
     const auto found = std::find(names.begin(), names.end(), force.on);
     const bool turns = found != names.end() && input.kind.system().is_rotation(found - names.begin());
     const bool stays = !force.follows && force.follows_where.line > 0;

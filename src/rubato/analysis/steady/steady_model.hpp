@@ -61,8 +61,7 @@ struct SteadyModel {
 SteadyModel build_steady_model(const model::StudyDescription& study, const numerics::Parameters& values);
 
 /// A study without the loads that swing: what its equilibrium depends on.
-model::StudyDescription without_harmonic_loads(const model::StudyDescription& study,
-                                               const numerics::Parameters& values);
+model::StudyDescription without_harmonic_loads(const model::StudyDescription& study);
 
 /// Throws InvalidInput, at the place and with what to take instead, for what small motions of a mechanism cannot carry:
 /// what follows t, laws of joints that are not linear, forces that turn with their body.
