@@ -46,7 +46,7 @@ double apart(const MechanismStudy& a, const MechanismStudy& b, const std::string
 // What the guide holds does not change: both say the same in every step.
 TEST_P(PressedByReactions, OnAnInclineAreThoseOfItsNormalForce) {
   const double normal = mass * gravity * std::cos(rise);
-  for (const char* step : {"0.002", "{ tolerance = 1e-5 }", "{ tolerance = 1e-5, events = \"locate\" }"}) {
+  for (const char* step : {"0.002", "{ tolerance = 1e-5 }"}) {
     const auto study = [&](const std::string& load) {
       return block_in_guide(GetParam(), rise, "stiffness = 300.0", 2.0) + rub("guide", 4000.0, 0.4, load) +
              GetParam().gravity() + transient(step, 1.5) + "output = { interval = 0.05 }\n";
@@ -178,6 +178,14 @@ TEST(PressedByReaction, IsRefusedByNameWhereThereIsNone) {
            "0.0]\naxis = [" +
            fmt::format("{}, {}", std::cos(rise), std::sin(rise)) + "]\n" + rub("guide", 1.0, 0.1, "\"reaction\"")),
       HasSubstr("the slider \"rub\" follows a reaction that is not determined"));
+}
+
+// Over steps of nanoseconds, as locating takes them, multipliers are round-off: sliders opened in between, and forgot
+// their force.
+TEST(PressedByReaction, DoNotEndStepsAtTheirTransitions) {
+  EXPECT_THAT(verdict(block_in_guide(in_plane, rise, "stiffness = 50.0") + rub("guide", 1000.0, 0.4, "\"reaction\"") +
+                      transient("{ tolerance = 1e-7, events = \"locate\" }", 0.1)),
+              HasSubstr("does not go with the slider \"rub\", which a reaction presses"));
 }
 
 }  // namespace

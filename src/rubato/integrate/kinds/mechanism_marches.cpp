@@ -61,6 +61,15 @@ void MechanismMarches::plan_events(const std::string& title, const model::StepDe
     throw InvalidInput(description.where, title +
                                               "reference = \"initial\" measures displacements, and configurations "
                                               "of mechanisms have none; give a number, or leave it out");
+  if (description.locate_events)
+    for (const model::MechanismLaw& law : mechanism_.model().laws)
+      if (law.reaction.presses())
+        throw InvalidInput(
+            description.where,
+            fmt::format("{}events = \"locate\" does not go with the {} \"{}\", which a reaction presses: over steps "
+                        "as short as those between its transitions reactions are round-off, and it would open in "
+                        "between; remove it, and the error chooses the steps",
+                        title, law.kind, law.name));
   step.locate_events = true;
   step.locate_sliders = description.locate_events.has_value();
 }
