@@ -11,6 +11,7 @@
 #include <rubato/analysis/study_transients.hpp>
 #include <rubato/analysis/transient.hpp>
 #include <rubato/core/stopping.hpp>
+#include <rubato/integrate/kinds/assemble_kind.hpp>
 #include <rubato/results/drawing/kind_drawing.hpp>
 #include <rubato/results/drawing/structure_drawing.hpp>
 
@@ -120,15 +121,18 @@ struct Plan {
   }
 
   PlannedAnalysis operator()(const model::StaticDescription& equilibrium) const {
-    const integrate::SystemKind& kind = input.kind;
+    std::shared_ptr<const integrate::SystemKind> free;
+    if (equilibrium.without_friction)
+      free = integrate::assemble_kind(without_friction(input.study.model), input.parameters);
+    const integrate::SystemKind& kind = free ? *free : input.kind;
     const auto plan = std::make_shared<const StaticPlan>(plan_static(analysis.name, analysis.where, equilibrium, kind));
     AnalysisOutline result{kind.is_constrained() ? "static equilibrium of a mechanism" : "static equilibrium",
                            100.0 * static_cast<double>(kind.system().size())};
     result.key_bytes = result.expected_bytes;
     result.warnings = warnings_of(*plan);
-    return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+    return {result, [plan, free, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_static(name, *plan, at.kind, context);
+              return run_static(name, *plan, free ? *free : at.kind, context);
             }};
   }
 

@@ -35,6 +35,18 @@ std::vector<std::string> findings_of(const integrate::Equilibrium& found) {
 
 }  // namespace
 
+model::ModelDescription without_friction(const model::ModelDescription& model) {
+  model::ModelDescription result = model;
+  const auto free = [](model::Quantity& coefficient) {
+    coefficient.value = 0.0;
+    coefficient.expression.clear();
+  };
+  for (model::SliderDescription& slider : result.sliders) free(slider.friction_coefficient);
+  for (model::ContactDescription& contact : result.contacts)
+    if (contact.friction_coefficient) free(*contact.friction_coefficient);
+  return result;
+}
+
 StaticPlan plan_static(const std::string& name, const Location& where, const model::StaticDescription& description,
                        const integrate::SystemKind& kind) {
   StaticPlan plan;

@@ -22,6 +22,9 @@ struct StaticPlan {
   std::string failure = {};                     ///< why the run will find none, where that is known; empty: it is not
 };
 
+/// The model with sliders and contacts that slip freely: mu = 0. Other laws stay.
+model::ModelDescription without_friction(const model::ModelDescription& model);
+
 /// Evaluates a description. Throws InvalidInput.
 StaticPlan plan_static(const std::string& name, const Location& where, const model::StaticDescription& description,
                        const integrate::SystemKind& kind);

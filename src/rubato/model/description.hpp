@@ -310,6 +310,7 @@ struct SweptDescription {
 struct StaticDescription {
   std::optional<std::vector<ObservationDescription>> observe;        ///< all coordinates unless given
   std::optional<std::vector<ObservationDescription>> displacements;  ///< which are held; all unless given
+  bool without_friction = false;  ///< of sliders and contacts; else friction grows with the loads
   SectionForcesDescription section_forces;
   SweptDescription swept;
 };

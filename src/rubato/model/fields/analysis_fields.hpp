@@ -323,6 +323,8 @@ void fields(auto& visit, DamperCurveDescription& task) {
 
 void fields(auto& visit, StaticDescription& equilibrium) {
   held_displacements_field(visit, equilibrium.displacements);
+  visit.word("friction", equilibrium.without_friction, {{"grown", false}, {"none", true}},
+             {.says = "of sliders and contacts: what loads that grow from zero leave, or none", .unless = "grown"});
   observe_field(visit, equilibrium.observe);
   section_forces_field(visit, equilibrium.section_forces);
   swept_fields(visit, equilibrium.swept);
