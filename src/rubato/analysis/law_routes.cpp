@@ -153,13 +153,18 @@ const char* title_of(Route route) { return routes[static_cast<std::size_t>(route
 
 std::optional<std::string> refusal(Route route, const integrate::SystemKind& kind) {
   const std::vector<NonlinearPart> parts = kind.nonlinear_parts();
-  const auto refused = std::find_if(
-      parts.begin(), parts.end(), [&](const NonlinearPart& part) { return *handling(part.family, route).how == '\0'; });
+  // About an equilibrium a lock that is a spring is a stop.
+  const auto of = [&](const NonlinearPart& part) {
+    const bool is_stop = part.is_spring && route == Route::periodic;
+    return handling(is_stop ? Element::stop : part.family, route);
+  };
+  const auto refused =
+      std::find_if(parts.begin(), parts.end(), [&](const NonlinearPart& part) { return *of(part).how == '\0'; });
   if (refused == parts.end()) return std::nullopt;
   const std::string label = label_of(*refused, parts);
   if (route == Route::method_study)
     return fmt::format("{} needs a linear model with a closed-form response, this one has {}", title_of(route), label);
-  return fmt::format("{} does not take {}; {}", title_of(route), label, handling(refused->family, route).instead);
+  return fmt::format("{} does not take {}; {}", title_of(route), label, of(*refused).instead);
 }
 
 std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind) {

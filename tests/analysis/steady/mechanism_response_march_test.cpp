@@ -16,32 +16,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// A march of the same model that is long enough to forget its start.
-std::string march(double omega, int periods, const std::string& tolerance = "1e-7") {
-  const double period = 2.0 * pi / omega;
-  return fmt::format(R"(
-[[analysis]]
-name = "march"
-type = "transient"
-initial = "static"
-duration = {:.17g}
-step = {{ tolerance = {} }}
-output = {{ interval = {:.17g} }}
-)",
-                     period * periods, tolerance, period / 256.0);
-}
-
-/// Half of the peak to peak of a column over the last period of a march of 256 rows a period.
-double last_amplitude(const MemorySink& sink, const std::string& variable, const std::string& label) {
-  const auto& table = sink.tables.at("march");
-  const std::size_t column = table.column(variable, label), rows = table.rows.size();
-  double low = HUGE_VAL, high = -HUGE_VAL;
-  for (std::size_t row = rows - 257; row < rows; ++row) {
-    low = std::min(low, table.rows[row][column]);
-    high = std::max(high, table.rows[row][column]);
-  }
-  return 0.5 * (high - low);
-}
 TEST(MechanismResponses, OfAPendulumAreThoseOfALongMarch) {
   const std::string at = "Omega = 1.0", here = "Omega = 3.0";
   const auto marched = run_mechanism_study(replaced(swinging_bob, at, here) + march(3.0, 40));

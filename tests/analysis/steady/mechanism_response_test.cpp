@@ -23,85 +23,6 @@ std::string message_of(const std::string& study) {
   }
   return {};
 }
-const std::string two_carriages = R"(
-[parameters]
-Omega = 1.0
-[[body]]
-name = "a"
-mass = 2.0
-inertia = 0.1
-position = [0.0, 0.0]
-[[body]]
-name = "b"
-mass = 1.0
-inertia = 0.1
-position = [1.0, 0.0]
-[[joint]]
-name = "rail_a"
-type = "prismatic"
-between = ["ground", "a"]
-at = [0.0, 0.0]
-axis = [1.0, 0.0]
-stiffness = 40.0
-damping = 0.3
-[[joint]]
-name = "rail_b"
-type = "prismatic"
-between = ["ground", "b"]
-at = [1.0, 0.0]
-axis = [1.0, 0.0]
-[[spring]]
-between = ["a.x", "b.x"]
-stiffness = 25.0
-[[damper]]
-between = ["a.x", "b.x"]
-damping = 0.2
-[[force]]
-on = "b.x"
-amplitude = 3.0
-angular_frequency = "Omega"
-phase = 0.4
-)";
-
-const std::string two_masses = R"(
-[parameters]
-Omega = 1.0
-[[coordinate]]
-name = "a.x"
-mass = 2.0
-[[coordinate]]
-name = "b.x"
-mass = 1.0
-[[spring]]
-between = ["a.x", "ground"]
-stiffness = 40.0
-[[damper]]
-between = ["a.x", "ground"]
-damping = 0.3
-[[spring]]
-between = ["a.x", "b.x"]
-stiffness = 25.0
-[[damper]]
-between = ["a.x", "b.x"]
-damping = 0.2
-[[force]]
-on = "b.x"
-amplitude = 3.0
-angular_frequency = "Omega"
-phase = 0.4
-)";
-
-void expect_same(const MemorySink& one, const MemorySink& other, std::size_t rows, double tolerance) {
-  for (std::size_t row = 0; row < rows; ++row)
-    for (const char* label : {"a.x", "b.x"})
-      for (const char* variable :
-           {"amplitude", "velocity_amplitude", "acceleration_amplitude", "phase", "viscous_work", "input_work"}) {
-        const std::string of = std::string(variable).find("work") == std::string::npos ? label : "";
-        const double wanted = value_of(other, "frf", variable, of, row);
-        EXPECT_NEAR(value_of(one, "frf", variable, of, row), wanted, tolerance * (1.0 + std::abs(wanted)))
-            << variable << " of " << label << " at row " << row;
-      }
-}
 
 TEST(MechanismResponses, OfCarriagesOnRailsAreThoseOfMassesOnSprings) {
   const std::string frequencies = "[2.0, 3.5, 5.0, 6.8, 9.0]", asked = "observe = [\"a.x\", \"b.x\", \"b.x - a.x\"]";
@@ -298,50 +219,6 @@ expression = "3.0"
 following = true
 [[force]])");
   EXPECT_NE(message_of(pushed + response_about_rest("[2.0]")).find("have no potential"), std::string::npos);
-}
-
-TEST(MechanismResponses, TellOfLocksThatTheMotionComesTo) {
-  const std::string locked = replaced(swinging_bob, "damping = 0.35",
-                                      "damping = 0.35\nlock = { at = 0.01, kind = \"stop\", stiffness = 1e4 }");
-  const auto near = run_mechanism_study(locked + response_about_rest("[3.2]"));
-  ASSERT_EQ(near.report.warnings.size(), 1u);
-  EXPECT_NE(near.report.warnings[0].find("comes to the lock of \"pivot\", 0.01 rad"), std::string::npos)
-      << near.report.warnings[0];
-  EXPECT_TRUE(
-      run_mechanism_study(replaced(locked, "0.01,", "0.1,") + response_about_rest("[3.2]")).report.warnings.empty());
-}
-
-// The flap rests on its stop with m g a/k: a motion that is larger lifts it off.
-TEST(MechanismResponses, TellOfStopsThatTheMotionLeaves) {
-  const std::string flap = R"(
-[parameters]
-Omega = 3.0
-F = 1.0
-[gravity]
-acceleration = [0.0, -9.81]
-[[body]]
-name = "flap"
-mass = 1.0
-inertia = 0.05
-position = [0.5, 0.0]
-[[joint]]
-name = "hinge"
-type = "revolute"
-between = ["ground", "flap"]
-at = [0.0, 0.0]
-damping = 0.5
-lock = { at = -0.01, kind = "stop", stiffness = 2000.0, damping = 1.0 }
-[[force]]
-on = "flap.y"
-amplitude = "F"
-angular_frequency = "Omega"
-)";
-  EXPECT_TRUE(
-      run_mechanism_study(replaced(flap, "F = 1.0", "F = 8.0") + response_about_rest("[3.0]")).report.warnings.empty());
-  const auto far = run_mechanism_study(replaced(flap, "F = 1.0", "F = 12.0") + response_about_rest("[3.0]"));
-  ASSERT_EQ(far.report.warnings.size(), 1u);
-  EXPECT_NE(far.report.warnings[0].find("leaves the lock of \"hinge\", 0.002452 rad"), std::string::npos)
-      << far.report.warnings[0];
 }
 
 }  // namespace

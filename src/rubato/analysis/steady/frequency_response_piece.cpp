@@ -94,6 +94,11 @@ void PieceSolver::require_structure(Lane& lane, double point) {
   structure_values_ = std::move(wanted);
 }
 
+void PieceSolver::take_drive(Lane& lane, double point) {
+  if (model_->about) require_swinging_loads(input_.study.model, lane.drive->parameters_at(lane.values, point));
+  lane.drive->take_line(lane.values, model_->assembled);
+}
+
 /// What is solved next does not depend on what was solved before.
 void PieceSolver::forget() {
   for (const auto* solver : {&solver_, &free_, &stuck_})
@@ -170,7 +175,7 @@ void PieceSolver::solve_line(const SweepPiece& piece, PieceResult& result) {
       if (is_new_line || plan_.structure_follows_point) {
         require_structure(mine, point);
         if (is_new_line) forget();
-        mine.drive->take_line(mine.values, model_->assembled);
+        take_drive(mine, point);
         is_new_line = false;
       }
       mine.drive->take_point(point, excitation);
@@ -266,7 +271,7 @@ PieceSolver::Lane& PieceSolver::take_point(long line, std::size_t step) {
   Lane& mine = lane(0);
   take_line(mine, line);
   require_structure(mine, point_value(step));
-  mine.drive->take_line(mine.values, model_->assembled);
+  take_drive(mine, point_value(step));
   mine.drive->take_point(point_value(step), excitations_[0]);
   return mine;
 }

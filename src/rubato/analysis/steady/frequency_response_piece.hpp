@@ -81,6 +81,7 @@ class PieceSolver {
   void march_without_period(Lane& lane, double point, steady::SteadyResponse& response);
   void solve_linear(const RowPlace& place, const system::Excitation& excitation, PieceResult& result);
   void require_structure(Lane& lane, double point);
+  void take_drive(Lane& lane, double point);
   AboutRest::Excursion excursion_of_last() const;
   void finish_point(const Lane& lane, long line, std::size_t step, const system::Excitation& excitation,
                     steady::SteadyResponse& response, PieceResult& result);

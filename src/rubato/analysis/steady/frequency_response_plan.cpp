@@ -102,8 +102,13 @@ Route route_of(steady::SteadyRoute::Kind kind) {
 /// What is described, with the solver that is taken where none is named.
 Description with_route(Description description, const StudyInput& input) {
   const bool is_named = description.route_where.line > 0;
-  const bool has_laws = input.kind.structure() ? input.structure().has_laws()
-                                               : !input.study.model.laws.empty() || !input.study.model.sliders.empty();
+  const auto parts = input.kind.nonlinear_parts();
+  using Family = integrate::NonlinearPart::Family;
+  const bool has_laws = input.kind.structure()
+                            ? input.structure().has_laws()
+                            : std::any_of(parts.begin(), parts.end(), [](const auto& part) {
+                                return part.is_spring || (part.family != Family::stop && part.family != Family::lock);
+                              });
   if (!is_named && description.route == Description::Route::periodic && has_laws)
     description.route = refusal(Route::harmonic_balance, input.kind) ? Description::Route::time_marching
                                                                      : Description::Route::harmonic_balance;

@@ -32,6 +32,18 @@ model::HarmonicLaw law_of(const model::HarmonicDescription& harmonic, const nume
           model::evaluate(harmonic.phase, values, part + ": phase")};
 }
 
+std::string without_motion(const integrate::SmallMotions& motions) {
+  const std::string stops =
+      motions.rigid_stops.empty()
+          ? ""
+          : fmt::format(" (held by the rigid stop{} of \"{}\": give a stiffness to what is to give way)",
+                        motions.rigid_stops.size() == 1 ? "" : "s", fmt::join(motions.rigid_stops, "\", \""));
+  return fmt::format(
+      "the joints and locks leave no motion in the equilibrium{}; leave a joint or a latch out, or run type = "
+      "\"static\" to see what holds it there",
+      stops);
+}
+
 /// The loads that swing, on the motions that the joints leave. Their places among the laws of all loads are those of
 /// the forces: a mechanism has no others.
 std::vector<system::ModelLoad> loads_on(const model::ModelDescription& model, const integrate::MotionsAboutRest& about,
@@ -47,11 +59,6 @@ std::vector<system::ModelLoad> loads_on(const model::ModelDescription& model, co
       throw InvalidInput(force.where, fmt::format("the force on \"{}\" acts on no coordinate that moves", force.on));
     system::ModelLoad load;
     const model::HarmonicLaw law = law_of(*harmonic, values, fmt::format("the force on \"{}\"", force.on));
-    if (law.angular_frequency == 0.0)
-      throw InvalidInput(force.where,
-                         fmt::format("the force on \"{}\" has a frequency of zero here (\"{}\"), and would move the "
-                                     "equilibrium; say what does not swing as an expression without t",
-                                     force.on, harmonic->angular_frequency.expression));
     load.term.law = law;
     load.law = static_cast<int>(j);
     const auto row = about.motions.basis.row(found - names.begin());
@@ -70,8 +77,8 @@ std::vector<std::string> warnings_of(const integrate::MotionsAboutRest& about, c
   if (!motions.rigid_stops.empty())
     warnings.push_back(
         fmt::format("the rigid stop{} of \"{}\" hold{} in the equilibrium, and this response takes {} for joints: a "
-                    "stop lets go where its reaction would pull, which only a transient follows; give it a stiffness "
-                    "to be told where it does",
+                    "stop lets go where its reaction would pull, which only a transient follows; give it a stiffness, "
+                    "which is followed",
                     motions.rigid_stops.size() == 1 ? "" : "s", fmt::join(motions.rigid_stops, "\", \""),
                     motions.rigid_stops.size() == 1 ? "s" : "", motions.rigid_stops.size() == 1 ? "it" : "them"));
   if (!about.starts_at_rest)
@@ -89,7 +96,7 @@ SteadyModel about_rest(const model::StudyDescription& study, const numerics::Par
     throw InvalidInput(
         "the equilibrium without the harmonic loads is not stable: what begins beside it goes away from it, and no "
         "steady response stays near; begin beside it to be led to one that is (type = \"static\" shows where)");
-  if (about.motions.basis.cols() == 0) throw InvalidInput("the joints and locks leave no motion in the equilibrium");
+  if (about.motions.basis.cols() == 0) throw InvalidInput(without_motion(about.motions));
   if (about.motions.skew > 0.0)
     throw InvalidInput(
         fmt::format("the stiffness about the equilibrium is not symmetric, by {:.2g} of its size: loads that follow "
@@ -156,8 +163,9 @@ std::string AboutRest::told(const Excursion& excursion) const {
     const auto& lock = motions_.locks[static_cast<std::size_t>(excursion.lock)];
     return fmt::format(
         "the motion {} the lock of \"{}\", {:.4g} {} from the equilibrium, and this response goes on as if it did not; "
-        "run a transient there",
-        lock.is_held ? "leaves" : "comes to", lock.name, lock.room, lock.is_angle ? "rad" : "m");
+        "{}run a transient there",
+        lock.is_held ? "leaves" : "comes to", lock.name, lock.room, lock.is_angle ? "rad" : "m",
+        lock.is_damped_spring ? "leave out its damping, and its stiffness is followed, or " : "");
   }
   if (!(excursion.turn > large_turn)) return {};
   return fmt::format(
@@ -173,8 +181,23 @@ steady::SteadyRequest SteadyModel::request(const std::vector<Observed>& observed
   return asked;
 }
 
+void require_swinging_loads(const model::ModelDescription& model, const numerics::Parameters& values) {
+  for (const model::ForceDescription& force : model.forces) {
+    const auto* harmonic = swinging(force);
+    if (!harmonic) continue;
+    const std::string part = fmt::format("the force on \"{}\"", force.on);
+    if (law_of(*harmonic, values, part).angular_frequency != 0.0) continue;
+    throw InvalidInput(force.where, fmt::format("{} has a frequency of zero here (\"{}\"), and would move the "
+                                                "equilibrium; say what does not swing as an expression without t",
+                                                part, harmonic->angular_frequency.expression));
+  }
+}
+
 SteadyModel build_steady_model(const model::StudyDescription& study, const numerics::Parameters& values) {
-  if (model::is_mechanism(study.model)) return about_rest(study, values);
+  if (model::is_mechanism(study.model)) {
+    require_swinging_loads(study.model, values);
+    return about_rest(study, values);
+  }
   return {build_structure(study, values), std::nullopt};
 }
 
@@ -225,7 +248,7 @@ void refuse_beyond_small_motions(const StudyInput& input, const Location& where,
   }
   using Family = integrate::NonlinearPart::Family;
   for (const integrate::NonlinearPart& part : input.kind.nonlinear_parts())
-    if (part.family == Family::pressed_slider || part.family == Family::contact || part.family == Family::stop)
+    if (part.family == Family::pressed_slider || part.family == Family::contact)
       refuse(where,
              fmt::format("the {} \"{}\" is not carried to small motions of a mechanism yet", part.kind, part.name),
              part.family == Family::pressed_slider ? "give it a normal_load that is a number, or run a transient"

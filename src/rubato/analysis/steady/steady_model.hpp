@@ -60,6 +60,10 @@ struct SteadyModel {
 /// stable, or loads without a potential.
 SteadyModel build_steady_model(const model::StudyDescription& study, const numerics::Parameters& values);
 
+/// Throws InvalidInput, at its place, for a harmonic force of a mechanism whose frequency is zero at these parameters:
+/// it would move the equilibrium. To be asked at each of them, since a model that is kept has been asked at others.
+void require_swinging_loads(const model::ModelDescription& model, const numerics::Parameters& values);
+
 /// A study without the loads that swing: what its equilibrium depends on.
 model::StudyDescription without_harmonic_loads(const model::StudyDescription& study);
 

@@ -60,8 +60,8 @@ std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
   for (const auto& lock : model.locks)
-    parts.push_back(lock.is_stop_part ? NonlinearPart{NonlinearPart::Family::stop, "stop", lock.name}
-                                      : NonlinearPart{NonlinearPart::Family::lock, "lock", lock.name});
+    parts.push_back({lock.is_stop_part ? NonlinearPart::Family::stop : NonlinearPart::Family::lock,
+                     lock.is_stop_part ? "stop" : "lock", lock.name, false, lock.is_spring()});
   return parts;
 }
 

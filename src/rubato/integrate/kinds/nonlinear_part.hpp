@@ -19,6 +19,7 @@ struct NonlinearPart {
   std::string kind;  ///< of a law: its table in the study file
   std::string name;
   bool depends_on_time = false;
+  bool is_spring = false;  ///< of a stop or lock of a mechanism: without damping
 };
 
 }  // namespace rubato::integrate

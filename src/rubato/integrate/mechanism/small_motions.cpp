@@ -2,6 +2,7 @@
 #include <rubato/integrate/mechanism/law_about_rest.hpp>
 #include <rubato/integrate/mechanism/motions_left.hpp>
 #include <rubato/integrate/mechanism/small_motions.hpp>
+#include <rubato/model/laws/jenkins.hpp>
 #include <rubato/numerics/rotations.hpp>
 #include <rubato/system/mechanism_equations.hpp>
 
@@ -11,7 +12,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace rubato::integrate {
 namespace {
@@ -39,6 +43,29 @@ void take_slope(double slope, const Vector& share, const Matrix& round_off, Matr
       matrix.data()[i] = 0.0;
 }
 
+/// A law that acts by itself: its slopes leave K and C, and what its force makes of the curvature of u stays.
+struct LawAtRest {
+  const std::string& name;
+  const std::string& kind;
+  const std::shared_ptr<const model::Law>& law;
+  double u = 0.0;
+  Vector share;  ///< du/dz [r]
+  const double* memory = nullptr;
+  double normal = 0.0;
+};
+
+void take_law(const LawAtRest& one, SmallMotions& motions) {
+  motions.laws.push_back({one.u, one.law->at({one.u, 0.0, 0.0, model::Side::right, one.normal}, one.memory).force});
+  model::LawBetween between;
+  between.name = one.name;
+  between.kind = one.kind;
+  between.law = law_about_rest(one.law, one.u, one.memory, one.normal);
+  between.normal.value = one.normal;
+  for (Index i = 0; i < one.share.size(); ++i)
+    if (one.share[i] != 0.0) between.shares.push_back({i, one.share[i]});
+  motions.parts.laws.push_back(std::move(between));
+}
+
 void take_laws(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
                SmallMotions& motions) {
   const Matrix of_stiffness = eps * left.terms, of_damping = 8.0 * eps * left.damping.cwiseAbs();
@@ -47,7 +74,6 @@ void take_laws(const system::Mechanism& mechanism, const system::State& rest, Mo
     const Vector share = std::visit([&](const auto& of) { return share_of(of, rest.q, left.basis); }, law.u);
     const double* const memory = rest.memory.data() + law.memory;
     const double normal = law.normal.value;
-    // The law acts by itself: its slopes leave K and C, and what its force makes of the curvature of u stays.
     const model::LawAnswer slopes = law.law->at({u, 0.0, rest.t, model::Side::right, normal}, memory);
     if (!std::isfinite(slopes.by_u) || !std::isfinite(slopes.by_rate))
       throw InvalidInput(
@@ -56,36 +82,47 @@ void take_laws(const system::Mechanism& mechanism, const system::State& rest, Mo
                       law.kind, law.name));
     if (slopes.by_u != 0.0) take_slope(slopes.by_u, share, of_stiffness, left.stiffness);
     if (slopes.by_rate != 0.0) take_slope(slopes.by_rate, share, of_damping, left.damping);
-    motions.laws.push_back({u, slopes.force});
-    model::LawBetween between;
-    between.name = law.name;
-    between.kind = law.kind;
-    between.law = law_about_rest(law.law, u, memory, normal);
-    between.normal.value = normal;
-    for (Index i = 0; i < share.size(); ++i)
-      if (share[i] != 0.0) between.shares.push_back({i, share[i]});
-    motions.parts.laws.push_back(std::move(between));
+    take_law({law.name, law.kind, law.law, u, share, memory, normal}, motions);
   }
 }
 
-void take_locks(const system::Mechanism& mechanism, const system::State& rest, const Matrix& basis,
-                SmallMotions& motions) {
+std::vector<std::string> rigid_stops(const system::Mechanism& mechanism, const system::State& rest) {
+  std::vector<std::string> names;
   const auto& locks = mechanism.model().locks;
+  for (std::size_t i = 0; i < locks.size(); ++i)
+    if (rest.phase[i] != model::lock_open && !locks[i].is_latch && locks[i].is_rigid()) names.push_back(locks[i].name);
+  return names;
+}
+
+/// A stop that is a spring acts by itself, open or held. What damps only while it holds is a spring and a damper while
+/// the motion does not leave it.
+void take_locks(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
+                SmallMotions& motions) {
+  static const std::string kind = "stop";
+  const Matrix of_stiffness = eps * left.terms;
+  const auto& locks = mechanism.model().locks;
+  motions.rigid_stops = rigid_stops(mechanism, rest);
   for (std::size_t i = 0; i < locks.size(); ++i) {
     const model::Lock& lock = locks[i];
     const bool is_held = rest.phase[i] != model::lock_open;
     if (is_held && lock.is_latch) continue;
-    if (is_held && lock.is_rigid()) {
-      motions.rigid_stops.push_back(lock.name);
+    if (is_held && lock.is_rigid()) continue;
+    const Vector share = share_of(lock.s, rest.q, left.basis);
+    const double beyond = lock.sign * (lock.s.value(rest.q.data()) - lock.at);
+    if (lock.is_spring()) {
+      if (is_held) take_slope(lock.stiffness, share, of_stiffness, left.stiffness);
+      const double u = is_held ? std::max(0.0, beyond) : std::min(0.0, beyond);
+      take_law({lock.name, kind, model::make_one_sided_spring(lock.stiffness, 0.0), u, lock.sign * share}, motions);
       continue;
     }
     SmallMotions::Watched watched;
     watched.name = lock.name;
     watched.is_held = is_held;
     watched.is_angle = lock.s.is_angle();
-    watched.share = share_of(lock.s, rest.q, basis);
+    watched.is_damped_spring = !lock.is_latch && !lock.is_rigid();
+    watched.share = share;
     watched.sign = is_held ? -lock.sign : lock.sign;
-    watched.room = std::max(0.0, watched.sign * (lock.at - lock.s.value(rest.q.data())));
+    watched.room = std::max(0.0, is_held ? beyond : -beyond);
     motions.locks.push_back(std::move(watched));
   }
 }
@@ -144,11 +181,14 @@ SmallMotions small_motions(system::MechanismEquations& equations, const system::
   SmallMotions motions;
   motions.basis = left.basis;
   const Index r = left.freedoms();
-  if (r == 0) return motions;
+  if (r == 0) {
+    motions.rigid_stops = rigid_stops(mechanism, rest);
+    return motions;
+  }
   const Matrix of_rest = Matrix::Constant(r, r, 4.0 * left_over(equations, rest, left.basis));
   motions.skew = skew_beyond(left.stiffness, 16.0 * eps * left.terms + left.noise + of_rest);
   take_laws(mechanism, rest, left, motions);
-  take_locks(mechanism, rest, left.basis, motions);
+  take_locks(mechanism, rest, left, motions);
   take_coordinates(mechanism, rest, motions);
   motions.parts.mass = even(left.mass);
   motions.parts.damping = even(left.damping);

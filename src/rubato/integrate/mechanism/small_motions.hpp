@@ -17,8 +17,9 @@ namespace rubato::integrate {
 ///
 ///   M z'' + C z' + K z + B f(B^T z) = N^T load,   dq = N z
 ///
-/// with the geometric stiffness of what it carries there in K, the laws f as they are, beside their rest, and locks
-/// that hold as constraints or springs. What it observes are shares of z, from where it rests.
+/// with the geometric stiffness of what it carries there in K, and the laws f as they are, beside their rest. A stop
+/// that is a spring is such a law; one that damps too is, while it holds, a spring and a damper, and other locks that
+/// hold are constraints. What it observes are shares of z, from where it rests.
 struct SmallMotions {
   /// A lock, and when the motion comes to it or leaves it.
   struct Watched {
@@ -26,7 +27,8 @@ struct SmallMotions {
     double room = 0.0;  ///< how far s may go towards the lock, or away from it where it holds [m] or [rad]
     double sign = 1.0;  ///< of that way in s
     bool is_held = false, is_angle = false;
-    Vector share;  ///< ds/dz [r]
+    bool is_damped_spring = false;  ///< without its damping it would be a law
+    Vector share;                   ///< ds/dz [r]
   };
   /// A law, where it rests.
   struct Rest {

@@ -34,6 +34,8 @@ struct Lock {
   int joint = -1;                ///< the constraint that holds it, among the mechanism's; -1: it has a stiffness
 
   bool is_rigid() const { return joint >= 0; }
+  /// A spring that pushes from one side, and nothing else.
+  bool is_spring() const { return !is_latch && !is_rigid() && damping == 0.0; }
   /// On whose coordinate it acts; empty: on that of none.
   const std::string& joint_name() const { return is_stop_part ? on_joint : name; }
   /// Of one with a stiffness: how far s is beyond it [m] or [rad], and the force that its spring and damper make there.

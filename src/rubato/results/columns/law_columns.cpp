@@ -8,6 +8,7 @@ namespace rubato::results {
 LawColumns::LawColumns(const system::LocallyNonlinear& system, bool in_motion)
     : system_(system), in_motion_(in_motion), dissipated_(Vector::Zero(system.law_count())) {
   for (Index j = 0; j < system.law_count(); ++j) {
+    if (system.laws()[static_cast<std::size_t>(j)].kind == "stop") continue;  // a spring: it dissipates nothing
     (system.is_law_of_rotations(j) ? of_rotations_ : of_displacements_).push_back(j);
     if (system.laws()[static_cast<std::size_t>(j)].law->sticking_stiffness() > 0.0)
       (system.is_law_of_rotations(j) ? friction_of_rotations_ : friction_of_displacements_).push_back(j);
