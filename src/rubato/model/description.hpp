@@ -115,6 +115,8 @@ struct ContactDescription {
   std::optional<Quantity> friction_coefficient;  ///< mu [-]; none: nothing rubs
   std::optional<Quantity> gap;                   ///< [m]
   std::optional<Quantity> normal_load;           ///< N at d = 0 [N], instead of the gap
+  Quantity normal_damping;                       ///< [N s/m], of closed contacts
+  std::optional<Quantity> sliding_velocity;      ///< V of a belt or disc [m/s]: V t is added to the first u
   Location where;
 };
 
@@ -395,11 +397,21 @@ struct ReachedDescription {
   bool settles = false;          ///< go on to the static equilibrium next to it
 };
 
+/// What contacts do to small motions in one set of modes.
+struct ContactLimitDescription {
+  enum class Kind { open, stuck, frictionless, static_state, sliding };
+  Kind kind = Kind::stuck;
+  std::vector<std::pair<std::string, Quantity>> sliding;  ///< contacts and the sign (or direction) in which they slide
+  Location where;
+};
+
 struct ModesDescription {
-  std::optional<Quantity> count;                               ///< of each limit; all, at most 20, unless given
-  std::optional<std::vector<ObservationDescription>> observe;  ///< shapes to keep: all coordinates unless given
-  std::optional<Location> about_equilibrium;                   ///< of a mechanism: where that was asked for
-  std::optional<ReachedDescription> about_reached;             ///< of a mechanism
+  std::optional<Quantity> count;                                 ///< of each limit; all, at most 20, unless given
+  std::optional<std::vector<ObservationDescription>> observe;    ///< shapes to keep: all coordinates unless given
+  std::optional<Location> about_equilibrium;                     ///< of a mechanism: where that was asked for
+  std::optional<ReachedDescription> about_reached;               ///< of a mechanism
+  std::optional<std::vector<ContactLimitDescription>> contacts;  ///< free and stuck unless given
+  Location contacts_where;
   SweptDescription swept;
 };
 
@@ -423,6 +435,10 @@ struct DamperCurveDescription {
   Location objective_where;
   bool optimum = true;                                         ///< refined, with what certifies it
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
+  std::optional<FrequencyResponseDescription::Route> route;    ///< chosen by cost unless given
+  Location route_where;
+  std::optional<Quantity> tolerance;          ///< relative [-], of harmonic balance
+  std::optional<Location> about_equilibrium;  ///< of a mechanism: where that was asked for
 };
 
 struct AnalysisDescription {
