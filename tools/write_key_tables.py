@@ -41,6 +41,8 @@ def value(schema):
         return " or ".join(map(value, schema["oneOf"]))
     if schema["type"] == "array":
         items = schema["items"]
+        if any("enum" in one for one in items.get("oneOf", [])):
+            return "list of words or tables"
         one = value(items)
         return "list of " + one if "enum" in items else entries(schema, "table" if "table" in one else one.split()[-1])
     if schema["type"] == "object":

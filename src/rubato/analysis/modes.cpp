@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace rubato::analysis {
 namespace {
@@ -105,12 +107,15 @@ std::vector<integrate::FreeMotions> motions_of(const std::string& name, const Mo
                                                const integrate::SystemKind& kind, const system::State& state,
                                                RunContext& context) {
   std::vector<integrate::FreeMotions> limits;
-  const Index count = kind.limit_count();
+  const Index count = plan.limit_count(kind);
   context.progress.begin(name, static_cast<double>(count), "limits");
   try {
     const StopScope scope(context.stop);
     for (Index limit = 0; limit < count && !context.stop; ++limit) {
-      limits.push_back(kind.free_motions(state, limit, plan.count));
+      limits.push_back(
+          plan.contacts.empty()
+              ? kind.free_motions(state, limit, plan.count)
+              : integrate::free_motions_in(plan.contacts[static_cast<std::size_t>(limit)], kind, state, plan.count));
       context.progress.advance(static_cast<double>(limit + 1));
     }
   } catch (const Stopped&) {
@@ -144,9 +149,9 @@ std::string complaint_of(const integrate::FreeMotions& motions, std::size_t limi
   }
   if (found.missing > 0)
     return fmt::format("{} of the lowest {} modes of the limit {} were not found; ask for a few more or fewer",
-                       std::min(found.missing, plan.count), plan.count, mode_limits[limit]);
+                       std::min(found.missing, plan.count), plan.count, plan.limit_names()[limit]);
   if (held < plan.count || !found.has_converged)
-    return fmt::format("of {} modes of the limit {} {}: {}", plan.count, mode_limits[limit],
+    return fmt::format("of {} modes of the limit {} {}: {}", plan.count, plan.limit_names()[limit],
                        held == 0           ? "none was found"
                        : held < plan.count ? fmt::format("{} were found", held)
                                            : "not all were found to more than a few digits",
@@ -154,12 +159,48 @@ std::string complaint_of(const integrate::FreeMotions& motions, std::size_t limi
   return {};
 }
 
+/// Modes that grow. Two whose frequencies have met under friction flutter: one grows, its partner dies
+/// away faster than damping alone makes it.
+void tell_of_growth(const std::string& limit, const numerics::DampedModes& found, RunReport& report) {
+  constexpr double worth_a_word = 1e-9;  // of |s|: well above the round-off of modes that stay as they are
+  constexpr double met = 0.1;            // relative distance of the frequencies of two modes that may be such a pair
+  for (std::size_t i = 0; i < found.modes.size(); ++i) {
+    const numerics::DampedMode& mode = found.modes[i];
+    const double growth = mode.eigenvalue.real(), swing = mode.eigenvalue.imag();
+    if (!(growth > worth_a_word * mode.angular_frequency)) continue;
+    if (!(swing > worth_a_word * mode.angular_frequency)) {
+      report.findings.push_back(fmt::format("limit {}: mode {} grows as exp({:.6g}/s t)", limit, i + 1, growth));
+      report.warnings.push_back(fmt::format(
+          "limit {}: mode {} goes away without swinging (divergence): the state is not stable", limit, i + 1));
+      continue;
+    }
+    std::size_t partner = i;
+    double nearest = met * swing;
+    for (std::size_t k = 0; k < found.modes.size(); ++k) {
+      const double away = std::abs(found.modes[k].eigenvalue.imag() - swing);
+      if (k == i || !(found.modes[k].eigenvalue.real() < 0.0) || !(away <= nearest)) continue;
+      partner = k;
+      nearest = away;
+    }
+    report.findings.push_back(fmt::format("limit {}: mode {} at {:.6g} Hz grows as exp({:.6g}/s t)", limit, i + 1,
+                                          swing / (2.0 * std::numbers::pi), growth));
+    // Without numbers: a sweep tells equal warnings once, with the first sample that gave them.
+    report.warnings.push_back(fmt::format(
+        "limit {}: mode {} flutters{}: it grows, with a negative damping ratio, and the state about which it swings is "
+        "not stable; what it grows to a transient shows",
+        limit, i + 1,
+        partner == i ? std::string() : fmt::format(", its frequency having met that of mode {}", partner + 1)));
+  }
+}
+
 /// Tells of the modes of a limit, and gives the first complaint to the report.
 void tell_of(const integrate::FreeMotions& motions, std::size_t limit, const ModesPlan& plan,
              const integrate::SystemKind& kind, RunReport& report) {
   if (kind.is_constrained()) report.statistics.emplace_back("freedoms", std::to_string(motions.freedoms));
-  report.statistics.emplace_back("residual_" + mode_limits[limit], fmt::format("{:.1e}", motions.found.residual));
-  if (motions.found.missing < 0) report.statistics.emplace_back("completeness_" + mode_limits[limit], "not verified");
+  report.statistics.emplace_back("residual_" + plan.limit_names()[limit],
+                                 fmt::format("{:.1e}", motions.found.residual));
+  if (motions.found.missing < 0)
+    report.statistics.emplace_back("completeness_" + plan.limit_names()[limit], "not verified");
   if (motions.leaves_out_skew)
     report.warnings.push_back(fmt::format(
         "the stiffness is not symmetric, by {:.2g} of its size: loads that follow their body have no potential "
@@ -167,12 +208,32 @@ void tell_of(const integrate::FreeMotions& motions, std::size_t limit, const Mod
         "out, and tell nothing of flutter, which a transient does",
         motions.skew));
   if (motions.is_stable)
-    tell_round_off(kind.limit_count() > 1 ? fmt::format("limit {}: ", mode_limits[limit]) : "", motions.found, report);
+    tell_round_off(plan.limit_count(kind) > 1 ? fmt::format("limit {}: ", plan.limit_names()[limit]) : "",
+                   motions.found, report);
+  if (!plan.contacts.empty()) tell_of_growth(plan.limit_names()[limit], motions.found, report);
   if (motions.freedoms == 0) report.findings.push_back("there are no modes: the joints and locks leave no motion");
   if (report.message.empty()) report.message = complaint_of(motions, limit, plan, kind);
 }
 
+/// The limits of contacts, with the static state where one of them asks for it.
+void plan_contacts(const integrate::ModesRequest& request, const integrate::SystemKind& kind, ModesPlan& plan) {
+  plan.contacts = integrate::contact_limits(request, kind);
+  if (std::none_of(plan.contacts.begin(), plan.contacts.end(),
+                   [](const integrate::ContactLimit& limit) { return limit.needs_static_state(); }))
+    return;
+  integrate::Equilibrium found = kind.find_equilibrium(plan.state, {});
+  plan.failure = complaint(found);
+  plan.state = std::move(found.state);
+}
+
 }  // namespace
+
+std::vector<std::string> ModesPlan::limit_names() const {
+  if (contacts.empty()) return mode_limits;
+  std::vector<std::string> names;
+  for (const integrate::ContactLimit& limit : contacts) names.push_back(limit.name);
+  return names;
+}
 
 ModesPlan plan_modes(const std::string& name, const Location& where, const model::ModesDescription& description,
                      const integrate::SystemKind& kind, const numerics::Parameters& parameters,
@@ -189,6 +250,10 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
     return plan;
   }
   plan.state = kind.static_start(where, plan.warnings);
+  if (description.contacts) {
+    plan_contacts(request, kind, plan);
+    return plan;
+  }
   if (!description.about_equilibrium) {
     plan.state = kind.held_still(plan.state, plan.warnings);
     return plan;
@@ -220,14 +285,14 @@ RunReport run_modes(const std::string& name, const ModesPlan& plan, const integr
                                           plan.reached->settles ? "the equilibrium next to " : "",
                                           plan.reached->analysis, plan.reached->time));
   if (const std::string drives = held_drives(kind.drives()); !drives.empty()) report.findings.push_back(drives);
-  write_modes(name, plan.observed, limits, context.sink);
+  write_modes(name, plan.limit_names(), plan.observed, limits, context.sink);
   results::draw_configuration(name, kind, state, context.sink);
   for (std::size_t limit = 0; limit < limits.size(); ++limit) tell_of(limits[limit], limit, plan, kind, report);
   if (!report.message.empty()) {
     report.status = RunStatus::failed;
-  } else if (static_cast<Index>(limits.size()) < kind.limit_count()) {
+  } else if (static_cast<Index>(limits.size()) < plan.limit_count(kind)) {
     report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted after {} of {} limits", limits.size(), kind.limit_count());
+    report.message = fmt::format("interrupted after {} of {} limits", limits.size(), plan.limit_count(kind));
   }
   return report;
 }

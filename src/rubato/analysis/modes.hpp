@@ -4,6 +4,7 @@
 #include <rubato/analysis/run_context.hpp>
 #include <rubato/analysis/study_transients.hpp>
 #include <rubato/analysis/transient_plan.hpp>
+#include <rubato/integrate/kinds/contact_limits.hpp>
 #include <rubato/integrate/kinds/system_kind.hpp>
 
 #include <memory>
@@ -15,7 +16,7 @@ namespace rubato::analysis {
 
 /// Natural modes about a state at rest: the start, a static equilibrium, or where a transient leads; of a structure in
 /// the limits of its sliders, `free`, all removed, and `stuck`, all of them springs kT. Without sliders there is the
-/// limit `free` only.
+/// limit `free` only. Or in the limits of contacts that the study asks for, of which those that slide may flutter.
 struct ModesPlan {
   /// The transient that leads there, which the analysis marches again.
   struct Reached {
@@ -25,13 +26,21 @@ struct ModesPlan {
     bool settles = false;  ///< and on to the equilibrium next to it
   };
 
-  Index count = 0;        ///< the lowest so many of each limit
-  bool is_asked = false;  ///< the study gives the count
+  Index count = 0;                                ///< the lowest so many of each limit
+  bool is_asked = false;                          ///< the study gives the count
+  std::vector<integrate::ContactLimit> contacts;  ///< the limits asked for; empty: those of the kind
   std::vector<Observed> observed;
   system::State state;  ///< at rest, with the multipliers of its loads; of one that is reached the start
   bool about_equilibrium = false;
   std::optional<Reached> reached;
   std::vector<std::string> warnings = {};
+  /// The names of the limits: those asked for, or `free` and `stuck`.
+  std::vector<std::string> limit_names() const;
+  /// How many limits there are.
+  Index limit_count(const integrate::SystemKind& kind) const {
+    return contacts.empty() ? kind.limit_count() : static_cast<Index>(contacts.size());
+  }
+
   std::string failure;  ///< why the equilibrium was not found: the analysis fails; empty: nothing did
 };
 

@@ -17,12 +17,15 @@ bool has_complex(const std::vector<integrate::FreeMotions>& limits) {
   return false;
 }
 
-results::TableLayout layout_of(const std::string& name, const std::vector<Observed>& observed, bool is_complex) {
+results::TableLayout layout_of(const std::string& name, const std::vector<std::string>& names,
+                               const std::vector<Observed>& observed, bool is_complex) {
   const auto scalar = [](const std::string& variable, const std::string& unit, const std::string& description) {
     return results::Block{variable, unit, description, "", {}};
   };
-  results::Block limit = scalar("limit", "1", "free: sliders removed; stuck: sliders as springs");
-  limit.categories = mode_limits;
+  results::Block limit = scalar(
+      "limit", "1",
+      names == mode_limits ? "free: sliders removed; stuck: sliders as springs" : "what contacts and sliders do");
+  limit.categories = names;
   results::TableLayout layout{
       name,
       "",
@@ -108,10 +111,10 @@ void tell_round_off(const std::string& title, const numerics::DampedModes& found
         title, numbers_of(poor), poor.size() == 1 ? "is" : "are", 100.0 * worst));
 }
 
-void write_modes(const std::string& name, const std::vector<Observed>& observed,
+void write_modes(const std::string& name, const std::vector<std::string>& names, const std::vector<Observed>& observed,
                  const std::vector<integrate::FreeMotions>& limits, results::Sink& sink) {
   const bool is_complex = has_complex(limits);
-  const auto rows = sink.open(layout_of(name, observed, is_complex));
+  const auto rows = sink.open(layout_of(name, names, observed, is_complex));
   for (std::size_t limit = 0; limit < limits.size(); ++limit) {
     double number = 0.0;
     for (const auto& mode : limits[limit].found.modes) {

@@ -9,13 +9,14 @@
 
 namespace rubato::analysis {
 
-/// The limits of sliders, in the order of their numbers.
+/// The limits of sliders unless others are asked for, in the order of their numbers.
 inline const std::vector<std::string> mode_limits{"free", "stuck"};
 
 /// One row a mode: limit, number, angular frequency, frequency, damping ratio, eigenvalue and shape (with phi^H M phi =
 /// 1; its imaginary part where damping makes a mode of any limit complex).
-/// @param limits  the motions of each, in the order of mode_limits
-void write_modes(const std::string& name, const std::vector<Observed>& observed,
+/// @param names   of the limits
+/// @param limits  the motions of each, in the order of the names
+void write_modes(const std::string& name, const std::vector<std::string>& names, const std::vector<Observed>& observed,
                  const std::vector<integrate::FreeMotions>& limits, results::Sink& sink);
 
 /// Why modes did not converge, and what to do about it.

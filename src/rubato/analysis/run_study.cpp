@@ -88,11 +88,14 @@ AnalysisOutline outline(const ModesPlan& plan, const integrate::SystemKind& kind
   if (kind.is_constrained()) {
     result = {"modes of a mechanism", 28.0 * 20.0 * static_cast<double>(kind.system().size())};
   } else {
-    const double limits = static_cast<double>(kind.limit_count()), width = 7.0 + 2.0 * double(plan.observed.size());
-    result = {fmt::format("modes, the lowest {} of {}", plan.count, limits > 1.0 ? "both limits" : "the model"),
+    const double limits = static_cast<double>(plan.limit_count(kind)), width = 7.0 + 2.0 * double(plan.observed.size());
+    result = {fmt::format("modes, the lowest {} of {}", plan.count,
+                          !plan.contacts.empty() ? fmt::format("each of {} limits", plan.contacts.size())
+                          : limits > 1.0         ? "both limits"
+                                                 : "the model"),
               limits * static_cast<double>(plan.count) * width * 28.0};
   }
-  result.key_bytes = 2.0 * 28.0 * static_cast<double>(plan.count * kind.limit_count());
+  result.key_bytes = 2.0 * 28.0 * static_cast<double>(plan.count * plan.limit_count(kind));
   result.warnings = warnings_of(plan);
   return result;
 }

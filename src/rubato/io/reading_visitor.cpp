@@ -112,6 +112,47 @@ void ReadingVisitor::observe(const char* key, std::optional<std::vector<Observat
   }
 }
 
+void ReadingVisitor::contact_limits(const char* key, std::optional<std::vector<ContactLimitDescription>>& to,
+                                    Location& where, const Key&) {
+  using Kind = ContactLimitDescription::Kind;
+  static const std::vector<std::pair<std::string, Kind>> words{{"open", Kind::open},
+                                                               {"stuck", Kind::stuck},
+                                                               {"frictionless", Kind::frictionless},
+                                                               {"static", Kind::static_state}};
+  constexpr const char* expected = "a list such as [\"stuck\", \"frictionless\", { sliding = { pad = 1 } }]";
+  const toml::node* node = reader_.node(key);
+  if (!node) return;
+  where = reader_.where(key);
+  const toml::array* list = node->as_array();
+  if (!list || list->empty()) reader_.refuse_type(*node, key, expected);
+  to.emplace();
+  for (const toml::node& entry : *list) {
+    ContactLimitDescription& limit = to->emplace_back();
+    limit.where = reader_.location(entry);
+    if (const toml::table* table = entry.as_table()) {
+      TomlReader inner(*table, fmt::format("{}: {}", reader_.what(), key), reader_.file());
+      limit.kind = Kind::sliding;
+      if (const auto sliding = inner.optional_quantities_by_name("sliding"); sliding && !sliding->empty())
+        limit.sliding = *sliding;
+      else
+        inner.refuse_to_lack("sliding", ": { NAME = 1 }, the contacts that slide, each with its sign");
+      inner.finish();
+      continue;
+    }
+    const auto word = entry.value<std::string>();
+    if (!word) reader_.refuse_type(entry, key, expected);
+    const auto found = std::find_if(words.begin(), words.end(), [&](const auto& one) { return one.first == *word; });
+    if (found == words.end()) {
+      std::vector<std::string> known;
+      for (const auto& one : words) known.push_back(one.first);
+      throw InvalidInput(limit.where, fmt::format("{}: {} takes no \"{}\"{}", reader_.what(), key, *word,
+                                                  *word == "sliding" ? "; write { sliding = { NAME = 1 } }"
+                                                                     : suggestion(*word, known)));
+    }
+    limit.kind = found->second;
+  }
+}
+
 void ReadingVisitor::section_forces(const char* key, SectionForcesDescription& to, const Key&) {
   const toml::node* node = reader_.node(key);
   to.where = reader_.where(key);

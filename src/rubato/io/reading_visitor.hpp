@@ -253,6 +253,8 @@ class ReadingVisitor {
   void methods(const char* key, std::vector<model::MethodDescription>& to, const Key&);
   void observation(const char* key, std::optional<model::ObservationDescription>& to, const Key&);
   void observe(const char* key, std::optional<std::vector<model::ObservationDescription>>& to, const Key&);
+  void contact_limits(const char* key, std::optional<std::vector<model::ContactLimitDescription>>& to, Location& where,
+                      const Key&);
   void section_forces(const char* key, model::SectionForcesDescription& to, const Key&);
   void values(const char* key, model::ValuesDescription& to, const Key&);
   void frequencies(model::ValuesDescription& to, bool& in_hertz, const Key&, const Key&);

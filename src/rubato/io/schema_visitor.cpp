@@ -64,6 +64,19 @@ void SchemaVisitor::whole(const char* key, long, long, const model::Bounds& boun
   property(key, schema, about);
 }
 
+void SchemaVisitor::contact_limits(const char* key, const std::optional<std::vector<model::ContactLimitDescription>>&,
+                                   const Location&, const Key& about) {
+  const Json by_name = Json::object({{"type", Json::text("object")},
+                                     {"minProperties", Json::number(1)},
+                                     {"additionalProperties", reference("quantity")}});
+  const Json sliding = Json::object({{"type", Json::text("object")},
+                                     {"properties", Json::object({{"sliding", by_name}})},
+                                     {"required", Json::texts({"sliding"})},
+                                     {"additionalProperties", Json::boolean(false)}});
+  const Json word = Json::object({{"enum", Json::texts({"open", "stuck", "frictionless", "static"})}});
+  property(key, list(one_of({word, sliding}), {1}), about);
+}
+
 void SchemaVisitor::section_forces(const char* key, const model::SectionForcesDescription&, const Key& about) {
   property(key,
            one_of({Json::object({{"type", Json::text("boolean")}}),

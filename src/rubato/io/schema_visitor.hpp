@@ -197,6 +197,8 @@ class SchemaVisitor {
   void observe(const char* key, const std::optional<std::vector<model::ObservationDescription>>&, const Key& about) {
     property(key, one_of({any_name(), list(any_name()).set("uniqueItems", Json::boolean(true))}), about);
   }
+  void contact_limits(const char* key, const std::optional<std::vector<model::ContactLimitDescription>>&,
+                      const Location&, const Key& about);
   void section_forces(const char* key, const model::SectionForcesDescription&, const Key& about);
   void values(const char* key, const model::ValuesDescription&, const Key& about) {
     property(key, reference("values"), about);

@@ -164,7 +164,8 @@ KeyNumbers key_numbers_of(const model::AnalysisDescription& sample, const Sample
   const KeptTable* main = tables.find("");
   if (!main) return {};
   if (std::holds_alternative<model::StaticDescription>(sample.task)) return of_static(*main);
-  if (std::holds_alternative<model::ModesDescription>(sample.task)) return of_modes(*main, kind.limit_count() > 1);
+  if (const auto* modes = std::get_if<model::ModesDescription>(&sample.task))
+    return of_modes(*main, modes->contacts || kind.limit_count() > 1);
   KeyNumbers numbers;
   // The method exact takes no steps to show.
   const KeptTable* every_step = tables.find("every_step");

@@ -68,6 +68,8 @@ std::vector<model::Quantity> quantities_of(const model::AnalysisDescription& ana
   }
   if (const auto* modes = std::get_if<model::ModesDescription>(&analysis.task)) {
     take(modes->count, quantities);
+    for (const auto& limit : modes->contacts.value_or(std::vector<model::ContactLimitDescription>{}))
+      for (const auto& [name, sign] : limit.sliding) quantities.push_back(sign);
     if (const auto& reached = modes->about_reached) {
       take(reached->time, quantities);
       for (const auto& other : analyses)

@@ -224,6 +224,12 @@ void fields(auto& visit, ModesDescription& modes) {
                       .unless = "given"},
                      [&](auto& inner) { fields(inner, modes.about_reached.emplace()); });
   if (is_static) visit.where(modes.about_equilibrium.emplace(), "about");
+  visit.contact_limits(
+      "contacts", modes.contacts, modes.contacts_where,
+      {.says =
+           "limits of contacts and sliders: \"open\", \"stuck\", \"frictionless\", \"static\", or { sliding = { NAME "
+           "= 1 } } with the sign in which each slides",
+       .unless = "free and stuck"});
   swept_fields(visit, modes.swept);
   visit.flag("shapes", modes.swept.keeps_samples,
              {.says = "of a sweep: keep all columns of every sample, besides its key numbers", .unless = "false"});
