@@ -22,7 +22,7 @@ between = ["a.x", "ground"]
 damping = 4.0
 [[force]]
 on = "a.x"
-amplitude = 8.0
+amplitude = 5.0
 angular_frequency = 0.0
 [[stop]]
 name = "rest"
@@ -42,12 +42,15 @@ stiffness = 20.0
   ASSERT_EQ(carriages.report.status, analysis::RunStatus::done) << carriages.report.message;
   EXPECT_TRUE(carriages.report.warnings.empty()) << carriages.report.warnings.front();
   const MemorySink masses = run_study(two_masses + stops + response_about_rest(frequencies, asked));
-  expect_same(carriages.sink, masses, 3, 2e-5);
-  const MemorySink without = run_study(two_masses + response_about_rest(frequencies, asked));
+  expect_same(carriages.sink, masses, 3, 1e-3);  // of accelerations, whose kinks take the most orders
   for (std::size_t row = 0; row < 3; ++row) {
     const double mean = value_of(masses, "frf", "mean", "a.x", row);
     EXPECT_NEAR(value_of(carriages.sink, "frf", "mean", "a.x", row), mean, 2e-5);
-    EXPECT_GT(std::abs(mean - 14.0 / 100.0), 1e-3) << "the motion does not leave the stop";  // rest: (8 + 60*0.1)/100
+    for (const char* label : {"a.x", "b.x"}) {
+      const double wanted = value_of(masses, "frf", "amplitude", label, row);
+      EXPECT_NEAR(value_of(carriages.sink, "frf", "amplitude", label, row), wanted, 2e-5 * wanted) << label;
+    }
+    EXPECT_GT(std::abs(mean - 0.11), 1e-3) << "the motion does not leave the stop";  // at rest (5 + 60*0.1)/100
   }
 }
 
@@ -152,7 +155,7 @@ TEST(MechanismLoads, ThatStandStillAreRefusedInEachSample) {
     const auto ran = run_mechanism_study(
         replaced(replaced(swinging_bob, "Omega = 1.0", "Omega = 1.0\nn = 1"), "\"Omega\"", "\"n*Omega\"") +
         response_about_rest("[2.0, 3.0]",
-                            std::string("about = \"static\"\nparameter = \"Omega\"\nsweep = { n = ") + orders + " }"));
+                            std::string("about = \"static\"\nexcitation = \"Omega\"\nsweep = { n = ") + orders + " }"));
     ASSERT_EQ(ran.report.warnings.size(), 1u);
     EXPECT_NE(ran.report.warnings[0].find("has a frequency of zero here (\"n*Omega\")"), std::string::npos)
         << ran.report.warnings[0];
