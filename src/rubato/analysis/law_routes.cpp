@@ -169,7 +169,12 @@ std::optional<std::string> refusal(Route route, const integrate::SystemKind& kin
 
 std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind) {
   for (const NonlinearPart& part : kind.nonlinear_parts())
-    if (part.depends_on_time)
+    if (part.depends_on_time && part.family == NonlinearPart::Family::contact)
+      return fmt::format(
+          "the contact \"{}\" slides on with its sliding_velocity, which steady responses do not carry yet; leave it "
+          "out, or run a transient; modes with contacts = [{{ sliding = {{ {} = 1 }} }}] tell whether it flutters",
+          part.name, part.name);
+    else if (part.depends_on_time)
       return fmt::format(
           "the {} \"{}\" depends on t, and a steady response repeats with the loads; write it without t, or run a "
           "transient",

@@ -1,4 +1,7 @@
 #include <rubato/integrate/law_energy.hpp>
+#include <rubato/model/laws/sliding_block.hpp>
+
+#include <algorithm>
 
 namespace rubato::integrate {
 
@@ -23,6 +26,19 @@ std::vector<Account> accounts_of_laws() {
           {Account::Kind::dissipated, "law_dissipated", "dissipated by the laws since the start"}};
 }
 
+bool has_sliding_blocks(const system::LocallyNonlinear& system) {
+  return std::any_of(system.blocks().begin(), system.blocks().end(),
+                     [](const model::BlockBetween& block) { return model::sliding_velocity_of(*block.law) != 0.0; });
+}
+
+std::vector<Account> LawEnergy::accounts() const {
+  std::vector<Account> accounts = accounts_of_laws();
+  if (slides_)
+    accounts.push_back(
+        {Account::Kind::work, "sliding_work", "work of what moves the contacts that slide since the start"});
+  return accounts;
+}
+
 void LawEnergy::add_stored(const system::State& state, Entries row) {
   for (Index j = 0; j < system_.law_count(); ++j)
     row[0] += system_.laws()[static_cast<std::size_t>(j)].law->stored_energy(
@@ -35,6 +51,13 @@ void LawEnergy::add_stored(const system::State& state, Entries row) {
 void LawEnergy::add_flow(const system::State& before, const system::State& after, Entries row) {
   for (Index j = 0; j < system_.law_count(); ++j) row[1] += dissipated_by_law(system_, j, before, after);
   for (Index b = 0; b < system_.block_count(); ++b) row[1] += dissipated_by_block(system_, b, before, after);
+  if (!slides_) return;
+  for (Index b = 0; b < system_.block_count(); ++b) {
+    const double velocity = model::sliding_velocity_of(*system_.blocks()[static_cast<std::size_t>(b)].law);
+    const Index along = system_.row_of_block(b);
+    // As the work of loads is summed; the force as the step has it from one end to the other.
+    row[2] += 0.5 * velocity * (after.t - before.t) * (before.slider_force[along] + after.slider_force[along]);
+  }
 }
 
 }  // namespace rubato::integrate

@@ -1,4 +1,5 @@
 #include <rubato/integrate/law_problem.hpp>
+#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
@@ -87,6 +88,9 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
           std::all_of(system.laws().begin(), system.laws().end(),
                       [](const model::LawBetween& law) { return std::isfinite(law.law->largest_stiffness()); })),
       joined_start_{0} {
+  for (const model::BlockBetween& block : system.blocks())
+    block_velocity_.push_back(model::sliding_velocity_of(*block.law));
+  block_drift_.resize(block_velocity_.size());
   for (Index i = boxes_; i < m_; ++i) {
     const std::vector<model::Share> joined = system.column(i);
     joined_.insert(joined_.end(), joined.begin(), joined.end());
@@ -191,6 +195,10 @@ void LawProblem::evaluate_block(Index block, const Vector& force, system::State&
     block_end_[b].u[r] = u_[first + r];
     block_end_[b].rate[r] = v_[first + r];
   }
+  if (block_velocity_[b] != 0.0) {
+    block_end_[b].u[0] += block_drift_[b];
+    block_end_[b].rate[0] += block_velocity_[b];
+  }
   model::BlockAnswer& answer = block_answer_[b];
   answer = law.advance(block_start_[b], memory_ + place, block_end_[b], to.memory.data() + place);
   for (Index r = 0; r < size && largest < HUGE_VAL; ++r) {
@@ -288,6 +296,7 @@ void LawProblem::start(const system::State& from, const system::State& to) {
   for (std::size_t b = 0; b < block_start_.size(); ++b) {
     const auto block = static_cast<Index>(b);
     block_start_[b] = system_.block_point(block, from);
+    block_drift_[b] = block_velocity_[b] * to.t;
     const Index first = system_.row_of_block(block);
     for (Index i = first; i < first + system_.blocks()[b].law->size(); ++i) {
       const auto j = static_cast<std::size_t>(i - boxes_);

@@ -62,6 +62,7 @@ class LawProblem {
   std::vector<model::LawPoint> start_, end_;                // of each law
   std::vector<model::LawAnswer> answer_;                    // of each law, at end_
   std::vector<model::BlockPoint> block_start_, block_end_;  // of each block
+  std::vector<double> block_velocity_, block_drift_;        // of each: V, and V t at the end of the step
   std::vector<model::BlockAnswer> block_answer_;
   std::vector<double> reach_;  // the largest displacement behind u of each law and row of a block: its round-off
   Vector first_u_, first_v_, whole_u_, whole_v_, known_;  // of a motion that is made in parts

@@ -52,6 +52,12 @@ class Contact {
           at_least_zero(*d_.friction_coefficient, parameters_, part_ + ": friction_coefficient");
     }
     if (d_.gap) values.gap = number(*d_.gap, "gap");
+    if (d_.sliding_velocity) {
+      values.sliding_velocity = number(*d_.sliding_velocity, "sliding_velocity");
+      if (!std::isfinite(values.sliding_velocity))
+        throw InvalidInput(d_.sliding_velocity->where, fmt::format("{}: sliding_velocity must be a number, got {}",
+                                                                   part_, values.sliding_velocity));
+    }
     if (d_.normal_load)
       values.gap = -at_least_zero(*d_.normal_load, parameters_, part_ + ": normal_load", "; give it a gap instead") /
                    values.normal_stiffness;

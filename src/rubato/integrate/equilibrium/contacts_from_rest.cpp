@@ -1,9 +1,13 @@
 #include <rubato/integrate/equilibrium/contacts_from_rest.hpp>
+#include <rubato/model/laws/sliding_block.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace rubato::integrate {
+namespace {
+constexpr double from_far = 1e30;  // [m]: beside it no displacement turns the slip, nor does mu N/kT end it
+}
 
 ContactsFromRest::ContactsFromRest(const system::LocallyNonlinear& system)
     : system_(system), block_slopes_(static_cast<std::size_t>(system.block_count())) {
@@ -38,6 +42,9 @@ void ContactsFromRest::load_block(Index b, system::State& state) {
   model::BlockPoint from, to;
   for (Index i = 0; i < law.size(); ++i) to.u[i] = system_.relative_displacement(first + i, state.q);
   for (double* u : {from.u, to.u}) u[law.size() - 1] -= widened_[b];
+  // What slides on steadily has come from far: it slips.
+  if (const double velocity = model::sliding_velocity_of(law); velocity != 0.0)
+    to.u[0] += std::copysign(from_far, velocity);
   model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
   answer = law.advance(from, virgin_.data() + memory, to, state.memory.data() + memory);
   for (Index i = 0; i < law.size(); ++i) {

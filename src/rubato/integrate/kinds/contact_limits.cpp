@@ -1,5 +1,6 @@
 #include <rubato/core/stopping_aside.hpp>
 #include <rubato/integrate/kinds/contact_limits.hpp>
+#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/numerics/eigen_unsymmetric.hpp>
 
 #include <fmt/format.h>
@@ -14,6 +15,11 @@ using Kind = ContactLimit::Kind;
 
 constexpr Index most_unsymmetric = 400;  // seconds
 constexpr double any_limit = 1e100;      // a friction force that no contact holds: at() cuts it to mu N
+
+constexpr const char* two_directions =
+    "and rubs in two directions: across the one in which it slides it would be damped as its speed and load say, which "
+    "modes do not carry; write it with one tangential direction (tangential = { ... } and normal = { ... }), or take a "
+    "transient";
 
 const char* name_of(Kind kind) {
   switch (kind) {
@@ -48,18 +54,36 @@ std::vector<int> sliding_contacts(const ModesRequest& request, const model::Cont
       throw InvalidInput(place, title +
                                     " has no friction_coefficient, and nothing rubs that could slide; give it one, "
                                     "or leave it out");
-    if (directions > 1)
-      throw InvalidInput(place,
-                         title +
-                             " rubs in two directions: across the one in which it slides it would be damped as its "
-                             "speed and load say, which modes do not carry; write it with one tangential direction "
-                             "(tangential = { ... } and normal = { ... }), or take a transient");
+    if (directions > 1) throw InvalidInput(place, title + " slides, " + two_directions);
     const double sign = model::evaluate(quantity, request.parameters, title);
     if (sign != 1.0 && sign != -1.0)
       throw InvalidInput(place, fmt::format("{} slides in the direction 1 or -1 of its u, got {}", title, sign));
     slides[block] = sign > 0.0 ? 1 : -1;
   }
   return slides;
+}
+
+/// Whether contacts slide on steadily in the static state.
+bool slides_on(const ModesRequest& request, const model::ContactLimitDescription& description,
+               const system::LocallyNonlinear& system) {
+  bool slides = false;
+  for (const auto& block : system.blocks()) {
+    if (model::sliding_velocity_of(*block.law) == 0.0) continue;
+    slides = true;
+    if (block.law->size() > 2)
+      throw InvalidInput(description.where, fmt::format("{}contacts: in the static state \"{}\" slides, {}",
+                                                        request.title, block.name, two_directions));
+  }
+  return slides;
+}
+
+void refuse_large(const ModesRequest& request, const model::ContactLimitDescription& description,
+                  const system::LocallyNonlinear& system) {
+  if (system.size() <= most_unsymmetric) return;
+  throw InvalidInput(description.where,
+                     fmt::format("{}contacts: modes of contacts that slide are found for up to {} coordinates, "
+                                 "and this model has {}; reduce it ([reduction]), or take a transient",
+                                 request.title, most_unsymmetric, system.size()));
 }
 
 /// Adds the slope of one contact's force by another's displacement.
@@ -127,7 +151,10 @@ bool add_block(const ContactLimit& limit, Index b, const system::LocallyNonlinea
   if (limit.needs_static_state() &&
       law.contact(system.block_point(b, at), at.memory.data() + system.memory_of_block(b)) == model::Law::Contact::open)
     return false;
-  if (const int sign = limit.slides.empty() ? 0 : limit.slides[static_cast<std::size_t>(b)]; sign != 0) {
+  int sign = limit.slides.empty() ? 0 : limit.slides[static_cast<std::size_t>(b)];
+  if (limit.needs_static_state())
+    if (const double velocity = model::sliding_velocity_of(law); velocity != 0.0) sign = velocity > 0.0 ? 1 : -1;
+  if (sign != 0) {
     add_sliding(law, first, sign, stiffness);
     return true;
   }
@@ -149,14 +176,9 @@ std::vector<ContactLimit> contact_limits(const ModesRequest& request, const Syst
   std::vector<ContactLimit> limits;
   for (const model::ContactLimitDescription& one : *request.description.contacts) {
     ContactLimit limit{one.kind, name_of(one.kind), {}};
-    if (one.kind == Kind::sliding) {
-      if (system.size() > most_unsymmetric)
-        throw InvalidInput(one.where,
-                           fmt::format("{}contacts: modes of contacts that slide are found for up to {} coordinates, "
-                                       "and this model has {}; reduce it ([reduction]), or take a transient",
-                                       request.title, most_unsymmetric, system.size()));
-      limit.slides = sliding_contacts(request, one, system);
-    }
+    if (one.kind == Kind::sliding) limit.slides = sliding_contacts(request, one, system);
+    if (one.kind == Kind::sliding || (one.kind == Kind::static_state && slides_on(request, one, system)))
+      refuse_large(request, one, system);
     const auto same = std::count_if(limits.begin(), limits.end(),
                                     [&](const ContactLimit& other) { return other.kind == limit.kind; });
     if (same > 0 && one.kind != Kind::sliding)

@@ -130,7 +130,10 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
   visit.quantity(
       "normal_load", contact.normal_load,
       {.unit = "N", .says = "instead of the gap: N = max(0, normal_load + kn d)", .range = Range::not_negative});
+  visit.quantity("sliding_velocity", contact.sliding_velocity,
+                 {.unit = "m/s", .says = "V of a belt or disc: V t is added to u, the first of two", .unless = "0"});
   visit.exactly_one_of({"between", "normal"});
+  visit.requires_beside("sliding_velocity", "friction_coefficient");
   visit.excludes("gap", "normal_load");
   visit.requires_beside("between", "normal_direction");
   visit.requires_beside("normal_direction", "between");
@@ -149,6 +152,7 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
     if (contact.friction_coefficient && !contact.tangential_stiffness) reader.refuse_to_lack("tangential_stiffness");
     if (!is_of_nodes && contact.friction_coefficient && contact.tangential.empty()) reader.refuse_to_lack("tangential");
     if (!contact.friction_coefficient && !contact.tangential.empty()) reader.refuse_to_lack("friction_coefficient");
+    if (!contact.friction_coefficient && contact.sliding_velocity) reader.refuse_to_lack("friction_coefficient");
   });
 }
 

@@ -1,4 +1,5 @@
 #include <rubato/model/laws/elastic_contact.hpp>
+#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/model/laws/slip_on_circle.hpp>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ double length(const Pair& a) { return std::hypot(a[0], a[1]); }
 
 /// Contacts that rub in one direction have a second one in which nothing ever happens: one formula serves both, and
 /// hypot() of a number and zero is that number.
-class ElasticContact final : public BlockLaw, public BlockSlopes {
+class ElasticContact final : public BlockLaw, public BlockSlopes, public SlidingBlock {
  public:
   explicit ElasticContact(const ContactValues& values) : v_(values), kt_(values.tangential_stiffness) {
     assert(values.directions >= 0 && values.directions < largest_block && values.normal_stiffness > 0.0);
@@ -24,6 +25,7 @@ class ElasticContact final : public BlockLaw, public BlockSlopes {
 
   Index size() const override { return v_.directions + 1; }
   Index memory_size() const override { return v_.directions; }
+  double sliding_velocity() const override { return v_.sliding_velocity; }
 
   BlockAnswer advance(const BlockPoint& from, const double* memory, const BlockPoint& to, double* next) const override {
     BlockAnswer answer;

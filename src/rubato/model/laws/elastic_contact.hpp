@@ -13,6 +13,7 @@ struct ContactValues {
   double normal_stiffness = 0.0;      ///< kn > 0 [N/m]
   double friction_coefficient = 0.0;  ///< mu >= 0 [-]
   double gap = 0.0;                   ///< clearance at u = 0; negative: pressed by -kn gap there [m]
+  double sliding_velocity = 0.0;      ///< V: V t is added to the first number along the plane [m/s]
 };
 
 /// Elastic Coulomb contact with separation. Of its numbers those along the plane come first, that across it is last and

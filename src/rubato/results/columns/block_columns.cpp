@@ -95,7 +95,7 @@ void BlockColumns::append_since(const system::State& before, const system::State
         for (const Index b : kind.blocks) row.push_back(state.slider_force[system_.row_of_block(b) + i]);
         for (const Index b : kind.blocks) {
           const Index contact = system_.row_of_block(b) + i;
-          row.push_back(system_.relative_displacement(contact, state.q) -
+          row.push_back(system_.block_point(b, state).u[i] -
                         state.slider_force[contact] / law_of(b).limit_stiffness(i, true));
         }
       }
