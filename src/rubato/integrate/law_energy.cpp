@@ -1,5 +1,4 @@
 #include <rubato/integrate/law_energy.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 
 #include <algorithm>
 
@@ -28,7 +27,7 @@ std::vector<Account> accounts_of_laws() {
 
 bool has_sliding_blocks(const system::LocallyNonlinear& system) {
   return std::any_of(system.blocks().begin(), system.blocks().end(),
-                     [](const model::BlockBetween& block) { return model::sliding_velocity_of(*block.law) != 0.0; });
+                     [](const model::BlockBetween& block) { return block.law->sliding_velocity() != 0.0; });
 }
 
 std::vector<Account> LawEnergy::accounts() const {
@@ -53,7 +52,7 @@ void LawEnergy::add_flow(const system::State& before, const system::State& after
   for (Index b = 0; b < system_.block_count(); ++b) row[1] += dissipated_by_block(system_, b, before, after);
   if (!slides_) return;
   for (Index b = 0; b < system_.block_count(); ++b) {
-    const double velocity = model::sliding_velocity_of(*system_.blocks()[static_cast<std::size_t>(b)].law);
+    const double velocity = system_.blocks()[static_cast<std::size_t>(b)].law->sliding_velocity();
     const Index along = system_.row_of_block(b);
     // As the work of loads is summed; the force as the step has it from one end to the other.
     row[2] += 0.5 * velocity * (after.t - before.t) * (before.slider_force[along] + after.slider_force[along]);

@@ -1,5 +1,4 @@
 #include <rubato/integrate/law_problem.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/numerics/newton.hpp>
 
 #include <algorithm>
@@ -88,8 +87,7 @@ LawProblem::LawProblem(const system::LocallyNonlinear& system)
           std::all_of(system.laws().begin(), system.laws().end(),
                       [](const model::LawBetween& law) { return std::isfinite(law.law->largest_stiffness()); })),
       joined_start_{0} {
-  for (const model::BlockBetween& block : system.blocks())
-    block_velocity_.push_back(model::sliding_velocity_of(*block.law));
+  for (const model::BlockBetween& block : system.blocks()) block_velocity_.push_back(block.law->sliding_velocity());
   block_drift_.resize(block_velocity_.size());
   for (Index i = boxes_; i < m_; ++i) {
     const std::vector<model::Share> joined = system.column(i);

@@ -1,5 +1,4 @@
 #include <rubato/core/error.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/numerics/formula.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 #include <rubato/system/locally_nonlinear.hpp>
@@ -115,7 +114,7 @@ model::BlockPoint LocallyNonlinear::block_point(Index b, const State& state) con
     point.u[i] = relative_displacement(first + i, state.q);
     point.rate[i] = relative_displacement(first + i, state.v);
   }
-  if (const double velocity = model::sliding_velocity_of(*parts_.blocks[static_cast<std::size_t>(b)].law)) {
+  if (const double velocity = parts_.blocks[static_cast<std::size_t>(b)].law->sliding_velocity()) {
     point.u[0] += velocity * state.t;
     point.rate[0] += velocity;
   }

@@ -1,5 +1,4 @@
 #include <rubato/integrate/equilibrium/contacts_from_rest.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +42,7 @@ void ContactsFromRest::load_block(Index b, system::State& state) {
   for (Index i = 0; i < law.size(); ++i) to.u[i] = system_.relative_displacement(first + i, state.q);
   for (double* u : {from.u, to.u}) u[law.size() - 1] -= widened_[b];
   // What slides on steadily has come from far: it slips.
-  if (const double velocity = model::sliding_velocity_of(law); velocity != 0.0)
-    to.u[0] += std::copysign(from_far, velocity);
+  if (const double velocity = law.sliding_velocity(); velocity != 0.0) to.u[0] += std::copysign(from_far, velocity);
   model::BlockAnswer& answer = block_slopes_[static_cast<std::size_t>(b)];
   answer = law.advance(from, virgin_.data() + memory, to, state.memory.data() + memory);
   for (Index i = 0; i < law.size(); ++i) {

@@ -1,6 +1,5 @@
 #include <rubato/core/stopping_aside.hpp>
 #include <rubato/integrate/kinds/contact_limits.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/numerics/eigen_unsymmetric.hpp>
 
 #include <fmt/format.h>
@@ -68,7 +67,7 @@ bool slides_on(const ModesRequest& request, const model::ContactLimitDescription
                const system::LocallyNonlinear& system) {
   bool slides = false;
   for (const auto& block : system.blocks()) {
-    if (model::sliding_velocity_of(*block.law) == 0.0) continue;
+    if (block.law->sliding_velocity() == 0.0) continue;
     slides = true;
     if (block.law->size() > 2)
       throw InvalidInput(description.where, fmt::format("{}contacts: in the static state \"{}\" slides, {}",
@@ -153,7 +152,7 @@ bool add_block(const ContactLimit& limit, Index b, const system::LocallyNonlinea
     return false;
   int sign = limit.slides.empty() ? 0 : limit.slides[static_cast<std::size_t>(b)];
   if (limit.needs_static_state())
-    if (const double velocity = model::sliding_velocity_of(law); velocity != 0.0) sign = velocity > 0.0 ? 1 : -1;
+    if (const double velocity = law.sliding_velocity(); velocity != 0.0) sign = velocity > 0.0 ? 1 : -1;
   if (sign != 0) {
     add_sliding(law, first, sign, stiffness);
     return true;

@@ -1,7 +1,6 @@
 #include <rubato/core/stopping_aside.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 
 #include <fmt/format.h>
 
@@ -63,8 +62,7 @@ std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
                      law.name, law.law->depends_on_time() || law.normal.formula});
   }
   for (const auto& block : system_.blocks())
-    parts.push_back(
-        {NonlinearPart::Family::contact, block.kind, block.name, model::sliding_velocity_of(*block.law) != 0.0});
+    parts.push_back({NonlinearPart::Family::contact, block.kind, block.name, block.law->sliding_velocity() != 0.0});
   return parts;
 }
 

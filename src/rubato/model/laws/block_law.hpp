@@ -51,6 +51,9 @@ class BlockLaw {
   virtual double limit_stiffness(Index i, bool is_stuck) const = 0;
   /// The last number at which the ends meet [m].
   virtual double clearance() const = 0;
+  /// V of a second end that moves on steadily, as a belt or a disc does: V t is added to the first number, V to its
+  /// rate, and what moves it does the work V T; 0: it does not move [m/s]
+  virtual double sliding_velocity() const { return 0.0; }
   /// What it does at a point; `slips_backwards` of a law of one direction only.
   virtual Law::Contact contact(const BlockPoint& point, const double* memory) const = 0;
 };

@@ -1,5 +1,4 @@
 #include <rubato/model/laws/elastic_contact.hpp>
-#include <rubato/model/laws/sliding_block.hpp>
 #include <rubato/model/laws/slip_on_circle.hpp>
 
 #include <algorithm>
@@ -17,7 +16,7 @@ double length(const Pair& a) { return std::hypot(a[0], a[1]); }
 
 /// Contacts that rub in one direction have a second one in which nothing ever happens: one formula serves both, and
 /// hypot() of a number and zero is that number.
-class ElasticContact final : public BlockLaw, public BlockSlopes, public SlidingBlock {
+class ElasticContact final : public BlockLaw, public BlockSlopes {
  public:
   explicit ElasticContact(const ContactValues& values) : v_(values), kt_(values.tangential_stiffness) {
     assert(values.directions >= 0 && values.directions < largest_block && values.normal_stiffness > 0.0);
