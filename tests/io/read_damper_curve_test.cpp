@@ -65,7 +65,7 @@ TEST(DamperCurveStudyError, NamesWhatIsMissing) {
             "[Hz])");
   EXPECT_EQ(with(over + range + frequencies + "points = 3\n"),
             "study.toml:28:1: error: analysis \"damper\" has no key \"points\"; known: name, type, parameter, range, "
-            "frequency, angular_frequency, excitation, sweep, objective, optimum, observe");
+            "frequency, angular_frequency, excitation, sweep, objective, solver, tolerance, about, optimum, observe");
 }
 
 TEST(DamperCurveStudyError, RefusesParametersThatCannotBe) {

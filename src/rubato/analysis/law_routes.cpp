@@ -32,8 +32,6 @@ constexpr std::array<RouteInfo, route_count> routes{
 constexpr const char* balance_or_march = "take solver = \"harmonic_balance\" or \"time_marching\"";
 constexpr const char* small_steps = "take \"generalized_alpha\" with step = { tolerance = ... }";
 constexpr const char* located = "take \"generalized_alpha\" with step = { tolerance = ..., events = \"locate\" }";
-constexpr const char* balanced_sweep = "take a frequency_response with solver = \"harmonic_balance\" and a sweep";
-constexpr const char* transient = "take a transient";
 constexpr const char* stiff_friction =
     "before it slips it has no stiffness, about which small motions are: take a [[slider]] with a stiffness between "
     "coordinates of its parts, or a transient";
@@ -62,7 +60,7 @@ constexpr Row stop{
     refuses(balance_or_march),  // periodic
     takes("by samples"),        // harmonic_balance
     takes("yes"),               // time_marching
-    refuses(balanced_sweep),    // damper_curve
+    takes("by samples"),        // damper_curve
     refuses(),                  // method_study
 };
 constexpr Row law{
@@ -73,7 +71,7 @@ constexpr Row law{
     refuses(balance_or_march),  // periodic
     takes("by samples"),        // harmonic_balance
     takes("yes"),               // time_marching
-    refuses(balanced_sweep),    // damper_curve
+    takes("by samples"),        // damper_curve
     refuses(),                  // method_study
 };
 constexpr Row contact{
@@ -84,7 +82,7 @@ constexpr Row contact{
     refuses(balance_or_march),  // periodic
     takes("by samples"),        // harmonic_balance
     takes("yes"),               // time_marching
-    refuses(balanced_sweep),    // damper_curve
+    takes("by samples"),        // damper_curve
     refuses(),                  // method_study
 };
 constexpr Row pressed_slider{
@@ -95,7 +93,7 @@ constexpr Row pressed_slider{
     refuses(balance_or_march),  // periodic
     takes("by samples"),        // harmonic_balance
     takes("yes"),               // time_marching
-    refuses(balanced_sweep),    // damper_curve
+    takes("by samples"),        // damper_curve
     refuses(),                  // method_study
 };
 constexpr Row joint_friction{
@@ -106,7 +104,7 @@ constexpr Row joint_friction{
     refuses(stiff_friction),  // periodic
     refuses(stiff_friction),  // harmonic_balance
     refuses(stiff_friction),  // time_marching
-    refuses(transient),       // damper_curve
+    refuses(stiff_friction),  // damper_curve
     refuses(),                // method_study
 };
 constexpr Row lock{
@@ -117,7 +115,7 @@ constexpr Row lock{
     takes("as it is"),     // periodic
     takes("as it is"),     // harmonic_balance
     takes("as it is"),     // time_marching
-    refuses(transient),    // damper_curve
+    takes("as it is"),     // damper_curve
     refuses(),             // method_study
 };
 // In the order of Element.

@@ -78,7 +78,8 @@ AnalysisOutline outline(const DamperCurvePlan& plan, Index slider_count) {
   result.expected_bytes = 36.0 * 2.0 * plan.points() * columns;  // peaks and limits are about as many again
   if (plan.sweep.kind() == Sweep::Kind::random) result.memory = 8.0 * plan.points();
   result.warnings = plan.warnings;
-  result.summary = fmt::format("damper curve over {}, {} line{} of {} values", plan.parameter, plan.sweep.lines(),
+  result.summary = fmt::format("damper curve over {}, {}, {} line{} of {} values", plan.parameter,
+                               steady::route_name(plan.route.kind), plan.sweep.lines(),
                                plan.sweep.lines() == 1 ? "" : "s", plan.values.size());
   return result;
 }
@@ -172,14 +173,14 @@ struct Plan {
   }
 
   PlannedAnalysis operator()(const model::DamperCurveDescription& curve) const {
-    require_structure();
     const auto plan =
         std::make_shared<const DamperCurvePlan>(plan_damper_curve(analysis.name, analysis.where, curve, input));
-    at_the_analysis([&] { (void)damper_curve_solvers().response(input.structure(), plan->request); });
-    return {outline(*plan, input.structure().slider_count()),
+    const auto& system = plan->system(input);
+    at_the_analysis([&] { (void)damper_curve_solvers(*plan).response(system, plan->request); });
+    return {outline(*plan, system.slider_count()),
             [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
               const StopScope scope(context.stop);
-              return run_damper_curve(name, *plan, at, damper_curve_solvers(), context);
+              return run_damper_curve(name, *plan, at, damper_curve_solvers(*plan), context);
             }};
   }
 

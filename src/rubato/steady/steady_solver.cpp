@@ -1,5 +1,6 @@
 #include <rubato/steady/steady_solver.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,12 @@ void SteadySolver::solve_lanes(std::span<const system::Excitation> excitations, 
                                std::span<SteadyResponse> responses) {
   assert(excitations.size() == 1 && responses.size() == 1);
   solve(excitations[0], start, responses[0]);
+}
+
+void SteadyDiscretisation::include(const SteadyDiscretisation& other) {
+  order = std::max(order, other.order);
+  samples = std::max(samples, other.samples);
+  firmness = std::min(firmness, other.firmness);  // what all points can be balanced with
 }
 
 bool are_slider_forces_resolved(const system::LocallyNonlinear& system, const system::Excitation& excitation,

@@ -2,6 +2,8 @@
 
 #include <rubato/system/excitation.hpp>
 
+#include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -83,6 +85,17 @@ struct Waveform {
   Matrix slider_force, displacement;  ///< fc and u of each slider [m x p] [N], [m]
 };
 
+/// What a response that is found by a truncated series was found with. Coarser and finer ones differ by their error.
+struct SteadyDiscretisation {
+  int order = 0;                                              ///< the highest that is balanced
+  int samples = 0;                                            ///< of laws, in a period; 0: as many as the orders ask
+  double firmness = std::numeric_limits<double>::infinity();  ///< of contacts that are balanced softer than they are
+
+  /// What both can be balanced with: the finer, but for contacts.
+  void include(const SteadyDiscretisation& other);
+  bool operator==(const SteadyDiscretisation&) const = default;
+};
+
 /// Finds steady responses of one structure, point after point. Holds its workspace and the last solutions, from which
 /// it continues: one a thread. What it answers may depend, below its error, on the points before; `forget` makes the
 /// next answer independent of them.
@@ -100,6 +113,13 @@ class SteadySolver {
   /// Of the last point solved.
   virtual Waveform waveform(int points) const = 0;
   virtual void forget() = 0;
+
+  /// That of the last point solved; of solvers that go by other ways than series nothing.
+  virtual SteadyDiscretisation discretisation() const { return {}; }
+  /// From now on all points are solved with this discretisation, whatever its error: answers are then as smooth over
+  /// frequency and parameters as the motion is, which differences need. Errors are estimated only where `with_error`,
+  /// else 0, and may exceed the tolerance. Nothing: each to the tolerance again.
+  virtual void hold(const std::optional<SteadyDiscretisation>& /*held*/, bool /*with_error*/ = true) {}
 };
 
 /// Whether sliders are so near that what springs and inertia do at their ends, K u + w^2 M u, is known to 1e-8 of their

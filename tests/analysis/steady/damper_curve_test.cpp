@@ -46,10 +46,10 @@ std::unique_ptr<Curve> run(const PreparedStudy& prepared, int threads = 1, resul
   QuietProgress progress;
   RunContext context{result->sink, progress, stop, threads, journal};
   for (const auto& analysis : prepared.study.analyses)
-    if (const auto* curve = std::get_if<model::DamperCurveDescription>(&analysis.task))
-      result->report =
-          run_damper_curve("damper", plan_damper_curve(analysis.name, analysis.where, *curve, prepared.input()),
-                           prepared.input(), damper_curve_solvers(), context);
+    if (const auto* curve = std::get_if<model::DamperCurveDescription>(&analysis.task)) {
+      const DamperCurvePlan plan = plan_damper_curve(analysis.name, analysis.where, *curve, prepared.input());
+      result->report = run_damper_curve("damper", plan, prepared.input(), damper_curve_solvers(plan), context);
+    }
   return result;
 }
 

@@ -224,7 +224,7 @@ TEST_P(EveryLoad, GivesTheDamperCurveThePeakOfTheResponse) {
     const auto curve =
         run_study(text + "[[analysis]]\nname = \"curve\"\ntype = \"damper_curve\"\nparameter = \"N0\"\n" +
                   "range = [1.0, 1.5]\nangular_frequency = { from = 2.9, to = 3.1, points = 3 }\n" +
-                  "optimum = false\n" + observe);
+                  "optimum = false\nsolver = \"periodic\"\n" + observe);
     const double at = value_of(curve, "curve", "angular_frequency"), peak = value_of(curve, "curve", "objective");
     EXPECT_GT(peak, 0.0);
     const auto sink = run_study(text + "[[analysis]]\nname = \"peak\"\ntype = \"frequency_response\"\n" + observe +
@@ -298,6 +298,7 @@ parameter = "N0"
 range = [0.5, 1.0, 2.0]
 angular_frequency = { from = 2.0, to = 6.0 }
 observe = ["n.x"]
+solver = "periodic"
 )";
 
 void expect_the_same(const testing::MemorySink& one, const testing::MemorySink& other) {

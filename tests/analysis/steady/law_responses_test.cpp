@@ -148,25 +148,5 @@ solver = "time_marching"
   }
 }
 
-TEST(LawResponses, OfDamperCurvesAreRefused) {
-  const PreparedStudy prepared(study(foot + R"(
-[[slider]]
-name = "contact"
-between = ["mass", "ground"]
-stiffness = 1.0
-friction_coefficient = 0.5
-normal_load = "N0"
-)",
-                                     R"(
-type = "damper_curve"
-parameter = "N0"
-range = [0.1, 0.2]
-angular_frequency = { from = 0.5, to = 1.5 }
-)"));
-  EXPECT_EQ(refusal(Route::damper_curve, *prepared.kind),
-            "a damper curve does not take the bouc_wen \"foot\"; take a frequency_response with solver "
-            "= \"harmonic_balance\" and a sweep");
-}
-
 }  // namespace
 }  // namespace rubato::testing

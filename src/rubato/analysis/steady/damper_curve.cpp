@@ -88,7 +88,8 @@ class Tables {
     const std::size_t at = plan_.sweep.names().size();
     const double frequency = last_optimum_[at + 1], objective = last_optimum_[layouts_.objective()];
     return fmt::format("{} {:.9g} {} at {} = {:.9g}, {}{}", what, objective, unit_of("objective"), plan_.parameter,
-                       last_optimum_[at], frequency_text(frequency, plan_.excitation_factor), certificate());
+                       last_optimum_[at], frequency_text(frequency, plan_.excitation_factor), certificate()) +
+           (plan_.is_truncated() ? fmt::format("; estimated error {:.1g}", of_optimum("error")) : std::string());
   }
 
  private:
@@ -274,10 +275,10 @@ class Lines {
 
 }  // namespace
 
-steady::SteadySolvers damper_curve_solvers() {
+steady::SteadySolvers damper_curve_solvers(const DamperCurvePlan& plan) {
+  steady::SteadyRoute route = plan.route;
   // Peaks are where differences of amplitudes vanish: these want all digits (see find_peaks).
-  steady::SteadyRoute route;
-  route.tolerance = 1e-13;
+  if (!plan.is_truncated()) route.tolerance = 1e-13;
   return steady::steady_solvers(route);
 }
 
@@ -316,11 +317,14 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
     report.message = "no value has a peak; the warnings and the column `status` say why";
   }
   report.statistics = {{"values", fmt::format("{:.0f}", counts.total())},
+                       {"solver", steady::route_name(plan.route.kind)},
                        {"points_solved", fmt::format("{:.0f}", counts.solves)}};
   counts.describe(report.statistics);
   DamperPeaks witness(plan, input, solvers, context.stop);
   report.warnings = Warnings(plan, input, counts, report.status == RunStatus::interrupted ? nullptr : &witness).all();
   if (const std::string finding = tables.finding(); !finding.empty()) report.findings = {finding};
+  if (!plan.chosen_for.empty())
+    report.findings.push_back(fmt::format("solved by harmonic_balance: {}", plan.chosen_for));
   return report;
 }
 

@@ -10,8 +10,9 @@ namespace rubato::analysis {
 
 struct DamperCurvePlan;
 
-/// The solvers that damper curves need: periodic orbits to the round-off that differences of them can bear.
-steady::SteadySolvers damper_curve_solvers();
+/// The solvers that a damper curve needs: periodic orbits to the round-off that differences of them can bear, or
+/// harmonic balance to its tolerance.
+steady::SteadySolvers damper_curve_solvers(const DamperCurvePlan& plan);
 
 /// Finds the largest objective over frequency at every value of the parameter, and refines the value where it is best
 /// (see find_optimum), on several threads; streams the tables of DamperCurveTables. The numbers have the same bits

@@ -65,6 +65,50 @@ void count_value(const DamperValue& value, double number, DamperCurveCounts& cou
     counts.at_ends.note(number);
 }
 
+struct FoundOptimum {
+  Optimum optimum;
+  steady::SteadyResponse response;  ///< with the largest error of all active peaks
+};
+
+/// The optimum, all of whose values share one discretisation: that of the best value and its neighbours. Where the
+/// error exceeds the tolerance it is sought again with what that needs.
+std::optional<FoundOptimum> optimum_of(const DamperCurvePlan& plan, const std::vector<DamperValue>& values,
+                                       const std::vector<double>& objectives, DamperPeaks& family) {
+  constexpr int most_rounds = 3;
+  const auto sought = [&] { return find_optimum(family, plan.values, objectives, plan.sign(), plan.noise); };
+  std::optional<steady::SteadyDiscretisation> shared;
+  const auto include = [&](const std::optional<steady::SteadyDiscretisation>& other) {
+    if (shared && other) shared->include(*other);
+    if (!shared) shared = other;
+  };
+  if (plan.is_truncated()) {
+    std::size_t best = values.size();
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (std::isfinite(objectives[i]) &&
+          (best == values.size() || plan.sign() * objectives[i] < plan.sign() * objectives[best]))
+        best = i;
+    for (std::size_t i = best == 0 ? 0 : best - 1; i < values.size() && i <= best + 1; ++i)
+      include(values[i].discretisation);
+  }
+  std::optional<FoundOptimum> found;
+  for (int round = 0; round < most_rounds; ++round) {
+    family.share(shared);
+    const auto optimum = sought();
+    if (!optimum) return std::nullopt;
+    double error = 0.0;
+    for (std::size_t i = optimum->active.size(); i-- > 0;) {
+      found = {*optimum, family.response_at(optimum->parameter, optimum->active[i])};
+      error = std::max(error, found->response.error);
+    }
+    found->response.error = error;
+    if (!shared || error <= plan.route.tolerance) return found;
+    const steady::SteadyDiscretisation before = *shared;
+    for (const Peak& peak : optimum->active) include(family.needed_at(optimum->parameter, peak.at));
+    if (before == *shared) return found;
+  }
+  return found;
+}
+
 }  // namespace
 
 void DamperCurveCounts::add(const DamperCurveCounts& other) {
@@ -112,6 +156,7 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
   value.is_done = true;
   value.peaks = family.peaks(parameter);
   value.scan = family.scan();
+  value.discretisation = family.discretisation();
   const auto count = [&](PointStatus status) { return value.scan.by_status[place(status)]; };
   if (count(PointStatus::unbounded) > 0) {
     // However high the peaks beside it are: this one is infinite.
@@ -121,7 +166,7 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
     value.response.amplitude = Vector::Constant(static_cast<Index>(family.observed()), HUGE_VAL);
     value.response.residual = value.response.error = nothing;
   } else if (!value.peaks.empty()) {
-    value.response = family.response_at(parameter, value.peaks.front().at);
+    value.response = family.response_at(parameter, value.peaks.front());
     value.status = point_status(value.response.status);
     // Where points beside the highest do not converge it is the best found, and no peak.
     if (value.status == PointStatus::converged && !value.peaks.front().is_closed)
@@ -173,16 +218,15 @@ DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTable
 
   const double solved = family.solves();
   try {
-    const auto optimum = find_optimum(family, plan.values, objectives, plan.sign());
-    if (optimum) {
-      const Peak& peak = optimum->active.front();
-      tables.add_optimum(keys, *optimum, family.response_at(optimum->parameter, peak.at), result.optimum);
+    if (const auto optimum = optimum_of(plan, values, objectives, family)) {
+      tables.add_optimum(keys, optimum->optimum, optimum->response, result.optimum);
     } else {
       result.counts.without_optimum += 1.0;
     }
   } catch (const Stopped&) {
     result.is_whole = false;
   }
+  family.share(std::nullopt);
   result.counts.solves += family.solves() - solved;
   return result;
 }

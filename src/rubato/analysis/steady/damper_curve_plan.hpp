@@ -1,11 +1,14 @@
 #pragma once
 
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
 #include <rubato/analysis/transient_plan.hpp>
+#include <rubato/steady/steady_route.hpp>
 #include <rubato/steady/steady_solver.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,7 +30,13 @@ struct DamperCurvePlan {
   Objective objective = Objective::amplitude;
   bool has_optimum = true;  ///< whether it is wanted, and there are values to look between
   std::vector<Observed> observed = {};
-  steady::SteadyRequest request = {};
+  steady::SteadyRequest request = {};  ///< of a mechanism that at the values of the study
+  steady::SteadyRoute route = {};      ///< periodic or harmonic balance
+  std::string chosen_for = {};         ///< why that route, where none was asked for
+  double highest = 0.0;                ///< frequency of the loads [rad/s]
+  double noise = 1e-13;                ///< of the objective of one discretisation, relative
+
+  std::shared_ptr<const SteadyModel> about = nullptr;  ///< of a mechanism: at the values of the study
 
   bool structure_follows_parameter = false, structure_follows_frequency = false;
   bool limits_follow_parameter = false;  ///< the linear limits
@@ -35,6 +44,10 @@ struct DamperCurvePlan {
 
   std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
 
+  /// What is solved, at the values of the study.
+  const auto& system(const StudyInput& input) const { return about ? about->system() : input.structure(); }
+  /// Whether responses are truncated, and have an error that is told.
+  bool is_truncated() const { return route.kind == steady::SteadyRoute::Kind::harmonic_balance; }
   double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(values.size()); }
   /// +1 where the lowest objective is best, -1 where the highest is.
   double sign() const { return objective == Objective::amplitude ? 1.0 : -1.0; }

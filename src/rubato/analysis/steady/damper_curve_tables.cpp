@@ -1,5 +1,8 @@
 #include <rubato/analysis/steady/damper_curve_tables.hpp>
 
+#include <rubato/results/columns/block_columns.hpp>
+#include <rubato/results/columns/law_columns.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -84,13 +87,13 @@ std::vector<std::string> damper_curve_columns() {
 DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurvePlan& plan, const StudyInput& input)
     : is_amplitude_(plan.objective == DamperCurvePlan::Objective::amplitude),
       observed_(plan.observed.size()),
-      sliders_(static_cast<std::size_t>(input.structure().slider_count())) {
+      sliders_(static_cast<std::size_t>(plan.system(input).slider_count())) {
   const std::string objective = is_amplitude_ ? "amplitude" : "dissipated";
   const bool turns = !plan.observed.empty() && plan.observed.front().is_rotation;
   const std::string amplitude_unit = turns ? "rad" : "m", unit = is_amplitude_ ? amplitude_unit : "J";
   std::vector<std::string> labels, sliders;
   for (const Observed& one : plan.observed) labels.push_back(one.label);
-  for (const auto& slider : input.structure().sliders()) sliders.push_back(slider.name);
+  for (const auto& slider : plan.system(input).sliders()) sliders.push_back(slider.name);
   const std::vector<Block> keys = key_blocks(plan);
   const Block frequency = scalar("angular_frequency", "rad/s", "where over frequency the objective is largest");
   const Block largest = words("largest", "which amplitude is largest", labels);
@@ -108,6 +111,12 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
     rest.push_back({"dissipated", "J", "friction work over a period", "slider", sliders});
     rest.push_back({"slip_share", "1", "share of the period in which it slips", "slider", sliders});
   }
+  const results::LawColumns laws(plan.system(input), false);
+  laws.add({"dissipated", "J", "by a law over a period"}, rest);
+  laws_ = laws.order();
+  const results::BlockColumns contacts(plan.system(input), false);
+  contacts.add({"dissipated", "J", "by a contact over a period"}, rest);
+  for (Index b = 0; b < plan.system(input).block_count(); ++b) laws_.push_back(plan.system(input).law_count() + b);
   rest.push_back(scalar("residual", "1", "of the equations solved, relative to the response"));
   rest.push_back(scalar("error", "1", "estimated error of the amplitudes, relative to the largest"));
 
@@ -121,7 +130,7 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
            "value",
            main,
            {{"type", "damper_curve"},
-            {"solver", "periodic"},
+            {"solver", steady::route_name(plan.route.kind)},
             {"parameter", plan.parameter},
             {"objective", objective},
             {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
@@ -178,6 +187,8 @@ void DamperCurveTables::add_response(const std::optional<Peak>& top, const stead
     append(response.dissipated, sliders_, rows);
     append(response.slip_share, sliders_, rows);
   }
+  for (const Index law : laws_)
+    rows.push_back(law < response.law_dissipated.size() ? response.law_dissipated[law] : nothing);
   rows.push_back(top ? response.residual : nothing);
   rows.push_back(top ? response.error : nothing);
 }

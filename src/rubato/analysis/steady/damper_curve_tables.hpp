@@ -50,6 +50,7 @@ class DamperCurveTables {
 
   bool is_amplitude_;
   std::size_t observed_ = 0, sliders_ = 0, objective_ = 0;
+  std::vector<Index> laws_;  ///< and blocks, in the order of the columns
   results::TableLayout main_, linear_, peaks_, optimum_, bands_;
 };
 

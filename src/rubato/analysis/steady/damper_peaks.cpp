@@ -7,6 +7,9 @@
 namespace rubato::analysis {
 namespace {
 
+constexpr int most_rounds = 3;         // of finer and finer discretisations
+constexpr double least_checked = 0.1;  // of the highest peak: whose errors are looked at
+
 std::vector<std::size_t> line_places(const DamperCurvePlan& plan) {
   std::vector<std::size_t> places = plan.sweep.places();
   places.push_back(plan.place);
@@ -42,11 +45,12 @@ void DamperPeaks::require_structure(double point) {
   free_.reset();
   stuck_.reset();
   structure_.reset();
-  structure_ =
-      std::make_unique<system::AssembledModel>(build_structure(input_.study, drive_.parameters_at(values_, point)));
-  solver_ = make_.response(structure_->system, plan_.request);
-  coarse_ = make_.coarse(structure_->system, plan_.request);
-  natural_ = steady::natural_frequencies(structure_->system);
+  structure_ = std::make_unique<SteadyModel>(build_steady_model(input_.study, drive_.parameters_at(values_, point)));
+  const steady::SteadyRequest request = structure_->request(plan_.observed, plan_.request);
+  solver_ = make_.response(structure_->system(), request);
+  coarse_ = make_.coarse(structure_->system(), request);
+  solver_->hold(held_, false);
+  natural_ = steady::natural_frequencies(structure_->system(), plan_.highest);
   structure_values_ = std::move(wanted);
 }
 
@@ -55,7 +59,7 @@ bool DamperPeaks::take(double parameter, bool begins_afresh) {
   values_.back() = parameter;
   try {
     require_structure(plan_.excitation_factor * plan_.from);
-    drive_.take_line(values_, *structure_);
+    drive_.take_line(values_, structure_->assembled);
     if (begins_afresh)
       for (const auto* solver : {&solver_, &free_, &stuck_})
         if (*solver) (*solver)->forget();
@@ -73,7 +77,7 @@ bool DamperPeaks::take_point(double angular_frequency) {
   try {
     if (plan_.structure_follows_frequency) {
       require_structure(point);
-      drive_.take_line(values_, *structure_);
+      drive_.take_line(values_, structure_->assembled);
     }
     drive_.take_point(point, excitation_);
   } catch (const InvalidInput& fault) {
@@ -101,14 +105,14 @@ bool DamperPeaks::evaluate(steady::SteadySolver& solver, double angular_frequenc
   if (plan_.objective == DamperCurvePlan::Objective::amplitude)
     values = response_.amplitude;
   else
-    values.setConstant(1, response_.dissipated.sum());
+    values.setConstant(1, response_.dissipated.sum() + response_.law_dissipated.sum());
   return true;
 }
 
 /// The scan is equally spaced, and looks besides wherever a harmonic of the loads meets a natural frequency: a peak is
 /// narrow only where the sliders hardly dissipate, which is near one of the two limits.
 PeakRange DamperPeaks::range() {
-  PeakRange range{plan_.from, plan_.to, plan_.samples, {}};
+  PeakRange range{plan_.from, plan_.to, plan_.samples, {}, plan_.noise};
   const double middle = 0.5 * (plan_.from + plan_.to);
   if (!take_point(middle)) return range;
   for (const auto& harmonic : excitation_.harmonics) {
@@ -126,6 +130,7 @@ PeakRange DamperPeaks::range_with_extremes() {
   const Scan told = scan_;
   const double solves = solves_;
   coarse_->forget();
+  std::vector<std::pair<double, double>> scanned;
   const bool has_amplitudes = plan_.objective == DamperCurvePlan::Objective::amplitude;
   const auto sought = has_amplitudes ? static_cast<Index>(observed()) : Index{1};
   const auto extremes = find_extremes(
@@ -134,21 +139,91 @@ PeakRange DamperPeaks::range_with_extremes() {
         const auto first = response_.harmonics.col(0);
         values.resize(sought + 3 * response_.amplitude.size());
         values << objective_, response_.amplitude, first.real(), first.imag();
+        scanned.emplace_back(w, objective_.maxCoeff());
         return true;
       },
       wanted, sought);
   wanted.besides.insert(wanted.besides.end(), extremes.begin(), extremes.end());
   scan_ = told;
   solves_ = solves;
+  high_places_.clear();
+  const auto by_height = [](const auto& a, const auto& b) { return a.second < b.second; };
+  const auto highest = std::max_element(scanned.begin(), scanned.end(), by_height);
+  for (const auto& place : scanned)
+    if (place == *highest || (place.second > 0.3 * highest->second &&
+                              std::find(extremes.begin(), extremes.end(), place.first) != extremes.end()))
+      high_places_.push_back(place);
   return wanted;
 }
 
+void DamperPeaks::hold(const std::optional<steady::SteadyDiscretisation>& held, bool with_error) {
+  held_ = held;
+  if (solver_) solver_->hold(held_, with_error);
+}
+
+void DamperPeaks::share(const std::optional<steady::SteadyDiscretisation>& shared) {
+  is_shared_ = shared.has_value();
+  hold(shared);
+}
+
+/// Adds what the response at a frequency needs to come within the tolerance.
+void DamperPeaks::include_what_is_needed(double angular_frequency, std::optional<steady::SteadyDiscretisation>& sum) {
+  solver_->hold(std::nullopt);
+  solver_->forget();
+  Vector values;
+  if (stop_.load() || !take_point(angular_frequency) || !evaluate(*solver_, angular_frequency, values)) return;
+  if (sum)
+    sum->include(solver_->discretisation());
+  else
+    sum = solver_->discretisation();
+}
+
+std::optional<steady::SteadyDiscretisation> DamperPeaks::needed_at(double parameter, double angular_frequency) {
+  std::optional<steady::SteadyDiscretisation> needed;
+  if (!take(parameter, true)) return needed;
+  include_what_is_needed(angular_frequency, needed);
+  solver_->hold(held_, false);
+  solver_->forget();
+  return needed;
+}
+
+std::vector<Peak> DamperPeaks::peaks_between(const PeakRange& range) {
+  return find_peaks(
+      [&](double w, Vector& values) { return !stop_.load() && take_point(w) && evaluate(*solver_, w, values); }, range);
+}
+
+/// Of a truncated response all points share one discretisation, which the highest places of the scan need; where a
+/// peak then errs more they are found again with what that needs.
 std::vector<Peak> DamperPeaks::peaks(double parameter) {
   scan_ = {};
+  if (!is_shared_) hold(std::nullopt);
   if (!take(parameter, true)) return {};
-  return find_peaks(
-      [&](double w, Vector& values) { return !stop_.load() && take_point(w) && evaluate(*solver_, w, values); },
-      range_with_extremes());
+  const PeakRange wanted = range_with_extremes();
+  if (!plan_.is_truncated() || is_shared_) return peaks_between(wanted);
+  const Scan told = scan_;
+  std::optional<steady::SteadyDiscretisation> needed;
+  for (const auto& [w, height] : high_places_) include_what_is_needed(w, needed);
+  scan_ = told;
+  std::vector<Peak> found;
+  for (int round = 0; round < most_rounds; ++round) {
+    hold(needed);
+    solver_->forget();
+    found = peaks_between(wanted);
+    if (found.empty() || !needed || stop_.load()) return found;
+    const Scan of_peaks = scan_;
+    const steady::SteadyDiscretisation before = *needed;
+    bool is_enough = true;
+    for (std::size_t i = 0; i < found.size() && found[i].value > least_checked * found.front().value; ++i)
+      if (!(response_at(parameter, found[i]).error <= plan_.route.tolerance)) {
+        is_enough = false;
+        include_what_is_needed(found[i].at, needed);
+      }
+    scan_ = of_peaks;
+    if (is_enough || before == *needed) break;
+    scan_ = told;
+  }
+  solver_->hold(held_, false);
+  return found;
 }
 
 std::optional<Peak> DamperPeaks::follow(double parameter, const Peak& known) {
@@ -165,7 +240,9 @@ std::vector<Peak> DamperPeaks::limit_peaks(double parameter, bool is_stuck) {
       [&](double w, Vector& values) {
         if (stop_.load() || !take_point(w)) return false;
         auto& solver = is_stuck ? stuck_ : free_;
-        if (!solver) solver = (is_stuck ? make_.stuck : make_.free)(structure_->system, plan_.request);
+        if (!solver)
+          solver = (is_stuck ? make_.stuck : make_.free)(structure_->system(),
+                                                         structure_->request(plan_.observed, plan_.request));
         solver->solve(excitation_, steady::SteadyStart::unloaded, response_);
         values = response_.amplitude;
         if (response_.status == steady::SteadyStatus::unbounded) unbounded = w;
@@ -176,12 +253,19 @@ std::vector<Peak> DamperPeaks::limit_peaks(double parameter, bool is_stuck) {
   return peaks;
 }
 
-const steady::SteadyResponse& DamperPeaks::response_at(double parameter, double angular_frequency) {
+const steady::SteadyResponse& DamperPeaks::response_at(double parameter, const Peak& peak) {
   response_ = {};
   response_.status = steady::SteadyStatus::not_converged;
-  if (!take(parameter, false) || !take_point(angular_frequency)) return response_;
+  if (!take(parameter, false) || !take_point(peak.at)) return response_;
   Vector values;
-  (void)evaluate(*solver_, angular_frequency, values);
+  solver_->hold(held_, true);
+  const bool has_values = evaluate(*solver_, peak.at, values);
+  solver_->hold(held_, false);
+  if (!held_ || !has_values) return response_;
+  // Of several balances another may have been found beside the peak.
+  if (const double apart = std::abs(values[peak.curve] - peak.value); apart > 0.0)
+    response_.error = std::max(response_.error, apart / std::abs(peak.value));
+  if (!(response_.error <= plan_.route.tolerance)) response_.status = steady::SteadyStatus::not_converged;
   return response_;
 }
 

@@ -33,8 +33,17 @@ class DamperPeaks final : public PeakFamily {
   /// the loads meet a resonance without damping.
   std::vector<Peak> limit_peaks(double parameter, bool is_stuck);
 
-  /// The whole response at a place of the curve. Its status says what became of it.
-  const steady::SteadyResponse& response_at(double parameter, double angular_frequency);
+  /// The whole response at a peak, with the discretisation of the last `peaks`. Its status says what became of it:
+  /// where it is truncated, and errs or differs from the peak by more than the tolerance, it is not converged.
+  const steady::SteadyResponse& response_at(double parameter, const Peak& peak);
+
+  /// With what the response behind the last `peaks` was truncated; unset where it is not.
+  const std::optional<steady::SteadyDiscretisation>& discretisation() const { return held_; }
+  /// From now on all values are solved with one discretisation, so that they can be differentiated over the parameter;
+  /// nothing: each value with its own.
+  void share(const std::optional<steady::SteadyDiscretisation>& shared);
+  /// What the response needs at a place of the curve to come within the tolerance; nothing where it does not.
+  std::optional<steady::SteadyDiscretisation> needed_at(double parameter, double angular_frequency);
 
   /// What became of the points that were solved for the last `peaks`: how many of each status, and where the first was
   /// that did not converge.
@@ -59,6 +68,9 @@ class DamperPeaks final : public PeakFamily {
   bool evaluate(steady::SteadySolver& solver, double angular_frequency, Vector& values);
   PeakRange range();
   PeakRange range_with_extremes();
+  std::vector<Peak> peaks_between(const PeakRange& range);
+  void hold(const std::optional<steady::SteadyDiscretisation>& held, bool with_error = false);
+  void include_what_is_needed(double angular_frequency, std::optional<steady::SteadyDiscretisation>& sum);
 
   const DamperCurvePlan& plan_;
   const StudyInput& input_;
@@ -67,13 +79,16 @@ class DamperPeaks final : public PeakFamily {
 
   ParametricExcitation drive_;
   std::vector<double> values_;  ///< of the swept parameters, and the curve's own
-  std::unique_ptr<system::AssembledModel> structure_;
+  std::unique_ptr<SteadyModel> structure_;
   std::vector<double> structure_values_;  ///< what it was built with
   std::unique_ptr<steady::SteadySolver> solver_, coarse_, free_, stuck_;
   Vector natural_;  ///< natural frequencies of both limits [rad/s]
   system::Excitation excitation_;
   steady::SteadyResponse response_;
-  Vector objective_;  ///< of the coarse scan
+  Vector objective_;                                    ///< of the coarse scan
+  std::vector<std::pair<double, double>> high_places_;  ///< extremes of the coarse scan: frequency and objective
+  std::optional<steady::SteadyDiscretisation> held_;
+  bool is_shared_ = false;  ///< what is held, by all values
   Scan scan_;
   double solves_ = 0.0;
 };

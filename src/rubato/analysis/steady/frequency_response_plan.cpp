@@ -182,38 +182,6 @@ void plan_waveforms(FrequencyResponsePlan& plan, const Description& description,
   }
 }
 
-/// Small motions of a mechanism are about an equilibrium, and a structure has no other place.
-void require_about(const Description& description, const StudyInput& input, const Location& where,
-                   const std::string& title) {
-  if (!input.kind.is_constrained()) {
-    if (description.about_equilibrium)
-      throw InvalidInput(*description.about_equilibrium,
-                         title +
-                             "about = \"static\" is of mechanisms; a structure answers as it is, and its static loads "
-                             "are among those of the response: leave it out");
-    return;
-  }
-  if (!description.about_equilibrium)
-    throw InvalidInput(where, title +
-                                  "a mechanism (bodies, joints, geometrically exact beams) answers harmonic loads by "
-                                  "small motions about its static equilibrium: add about = \"static\", or run a "
-                                  "transient");
-  refuse_beyond_small_motions(input, where, title);
-}
-
-/// Whether what is assembled depends on a parameter: of a mechanism all that its equilibrium does.
-std::function<bool(std::size_t)> model_dependence(const StudyInput& input, const FrequencyResponsePlan& plan) {
-  if (!input.kind.is_constrained())
-    return [&](std::size_t parameter) { return plan.dependence.reaches(parameter, Role::structure); };
-  auto still = std::make_shared<const model::StudyDescription>(without_harmonic_loads(input.study));
-  const StudyInput at_rest{*still, input.overrides, input.parameters, input.kind};
-  std::vector<std::size_t> varied = plan.sweep.places();
-  varied.push_back(plan.excitation);
-  return [still, dependence = dependence_of(at_rest, varied)](std::size_t parameter) {
-    return dependence.reaches_model(parameter);
-  };
-}
-
 /// One of the first and last points can be made at least; which others can is judged as they are reached.
 void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const std::string& title,
                   const Location& where) {
@@ -250,7 +218,7 @@ std::size_t FrequencyResponsePlan::steps_a_piece() const {
 FrequencyResponsePlan plan_frequency_response(const std::string& name, const Location& where,
                                               const Description& described, const StudyInput& input) {
   const std::string title = "analysis \"" + name + "\": ";
-  require_about(described, input, where, title);
+  require_about(described.about_equilibrium, input, where, title);
   const Description description = with_route(described, input);
   require_harmonic_loads(input, where, title);
   Sweep sweep(description.sweep, place(description.sweep_where, where), input, title);
@@ -261,7 +229,9 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   FrequencyResponsePlan plan{frequencies_of(description, input.parameters, title, where), excitation, 1.0,
                              std::move(sweep), dependence_of(input, std::move(varied))};
   if (plan.dependence.is_in_hertz(excitation)) plan.excitation_factor = 0.5 / std::numbers::pi;
-  plan_sweep(plan, model_dependence(input, plan), title);
+  std::vector<std::size_t> all = plan.sweep.places();
+  all.push_back(excitation);
+  plan_sweep(plan, model_dependence(input, plan.dependence, std::move(all)), title);
   plan_memory(plan, description, input, title, where);
   plan_route(plan, description, input, title, where);
   plan_request(plan, description, input, title, where);

@@ -7,20 +7,30 @@
 namespace rubato::analysis {
 namespace {
 
-constexpr double difference = 1e-4;    // of p, for derivatives of F
-constexpr double settled = 1e-9;       // of p, Newton's last step
+/// For values of F of a noise.
+struct Precision {
+  explicit Precision(double noise) {
+    const double root = std::sqrt(noise / 1e-13);
+    difference = 1e-4 * std::sqrt(root);
+    settled = finest = equal = 1e-9 * root;
+    round_off = 10.0 * noise;
+  }
+  double difference;  // of p, for derivatives of F
+  double settled;     // of p, Newton's last step
+  double finest;      // of p, for the place of a corner
+  double equal;       // of F: two peaks that are as near are one height
+  double round_off;   // of F: what is as near does not change
+};
+
 constexpr double close_enough = 1e-4;  // of p, for the end of Brent's method
-constexpr double finest = 1e-9;        // of p, for the place of a corner
-constexpr double equal = 1e-9;         // of F: two peaks that are as near are one height
-constexpr double round_off = 1e-12;    // of F: what is as near does not change
 constexpr double same_branch = 0.02;   // of x: how far a peak moves in a difference of p, at most
 constexpr int most_rounds = 60, most_newton = 20;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-class Refinement {
+class Refinement : private Precision {
  public:
-  Refinement(PeakFamily& family, double low, double high, double sign)
-      : family_(family), low_(low), high_(high), sign_(sign) {}
+  Refinement(PeakFamily& family, double low, double high, double sign, double noise)
+      : Precision(noise), family_(family), low_(low), high_(high), sign_(sign) {}
 
   double value(double p) {
     const auto peak = top(p);
@@ -221,17 +231,17 @@ class Refinement {
 }  // namespace
 
 std::optional<Optimum> find_optimum(PeakFamily& family, const std::vector<double>& samples,
-                                    const std::vector<double>& values, double sign) {
+                                    const std::vector<double>& values, double sign, double noise) {
   std::size_t best = samples.size();
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (std::isfinite(values[i]) && (best == samples.size() || sign * values[i] < sign * values[best])) best = i;
   if (best == samples.size()) return std::nullopt;
   const double low = samples[best == 0 ? 0 : best - 1], high = samples[std::min(best + 1, samples.size() - 1)];
-  Refinement refinement(family, samples.front(), samples.back(), sign);
+  Refinement refinement(family, samples.front(), samples.back(), sign, noise);
 
   std::size_t first = best, last = best;
   const auto is_level = [&](std::size_t i) {
-    return std::abs(values[i] - values[best]) <= equal * std::abs(values[best]);
+    return std::abs(values[i] - values[best]) <= Precision(noise).equal * std::abs(values[best]);
   };
   while (first > 0 && is_level(first - 1)) --first;
   while (last + 1 < samples.size() && is_level(last + 1)) ++last;

@@ -41,10 +41,10 @@ struct Optimum {
 /// Refines the best sample of F to the precision of the curves: a bracket, Brent's method, and then Newton's method on
 /// the derivative of the active peak, or on the difference of two where they cross.
 /// @param samples  rising values of p, at least 2   @param values  F there; NaN where there is none
-/// @param sign     +1: the lowest F; -1: the highest
+/// @param sign     +1: the lowest F; -1: the highest   @param noise  of F, relative; more makes for longer differences
 /// Nothing where no sample has a value.
 std::optional<Optimum> find_optimum(PeakFamily& family, const std::vector<double>& samples,
-                                    const std::vector<double>& values, double sign);
+                                    const std::vector<double>& values, double sign, double noise = 1e-13);
 
 std::string optimum_kind(Optimum::Kind kind);
 

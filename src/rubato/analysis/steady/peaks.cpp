@@ -8,10 +8,20 @@
 namespace rubato::analysis {
 namespace {
 
-constexpr double difference = 3e-6;    // of x: third differences and round-off of the curves disturb equally
-constexpr double settled = 1e-9;       // of x, Newton's last step
+/// For curves of a noise: at 1e-13 third differences and round-off of the curves disturb equally.
+struct Precision {
+  explicit Precision(double noise) {
+    const double more = std::cbrt(noise / 1e-13);
+    difference = 3e-6 * more;
+    settled = 1e-9 * more * more;
+    round_off = 1e3 * noise;
+  }
+  double difference;  // of x
+  double settled;     // of x, Newton's last step
+  double round_off;   // of a value
+};
+
 constexpr double close_enough = 2e-3;  // of the bracket, for Newton to start
-constexpr double round_off = 1e-10;    // of a value, of curves exact to 1e-13
 constexpr int most_parabolas = 40, most_newton = 12;
 constexpr double resolved = 1e-2;  // of a curve, which the cubic through samples may miss between them
 constexpr int least_halvings = 1, most_halvings = 5;
@@ -23,7 +33,8 @@ struct Bracket {
 
 class Search {
  public:
-  Search(const Curves& curves, const PeakRange& range, Index curve) : curves_(curves), range_(range), curve_(curve) {}
+  Search(const Curves& curves, const PeakRange& range, Index curve)
+      : curves_(curves), range_(range), precision_(range.noise), curve_(curve) {}
 
   bool value(double x, double& out) {
     if (!curves_(x, values_)) return false;
@@ -70,7 +81,7 @@ class Search {
   std::optional<Peak> finish(double x, double low, double high) {
     Peak peak{curve_, x, 0.0, 0.0, Peak::Kind::interior};
     for (int i = 0; i < most_newton; ++i) {
-      const double h = difference * std::max(std::abs(x), 1e-3 * (range_.to - range_.from));
+      const double h = precision_.difference * std::max(std::abs(x), 1e-3 * (range_.to - range_.from));
       double before = 0.0, here = 0.0, after = 0.0;
       if (!value(x - h, before) || !value(x, here) || !value(x + h, after)) return std::nullopt;
       const double slope = (after - before) / (2.0 * h), curvature = (after - 2.0 * here + before) / (h * h);
@@ -79,7 +90,7 @@ class Search {
       peak.slope = slope;
       if (!(curvature < 0.0)) return std::nullopt;
       const double next = x - slope / curvature;
-      if (std::abs(next - x) <= settled * std::abs(x)) {
+      if (std::abs(next - x) <= precision_.settled * std::abs(x)) {
         peak.value = here - 0.5 * slope * (next - x);
         peak.at = next;
         return peak;
@@ -95,7 +106,7 @@ class Search {
     const auto open = [&] { return Peak{curve_, bracket.middle, bracket.at_middle, NAN, Peak::Kind::interior, false}; };
     if (!narrow(bracket)) return open();
     // What lies lower, beyond round-off, is the top of another bend.
-    const double least = bracket.at_middle - round_off * std::abs(bracket.at_middle);
+    const double least = bracket.at_middle - precision_.round_off * std::abs(bracket.at_middle);
     if (auto peak = finish(bracket.middle, low, high); peak && peak->value >= least) return *peak;
     // No curvature to trust: a corner of the curve. It is where the bracket closes.
     for (int i = 0; i < 5; ++i)
@@ -106,6 +117,7 @@ class Search {
  private:
   const Curves& curves_;
   const PeakRange& range_;
+  Precision precision_;
   Index curve_;
   Vector values_;
 };
@@ -226,7 +238,8 @@ std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range) {
       }
       // At an end: a maximum between it and its neighbour has a slope that says so.
       Search search(curves, range, c);
-      const double inwards = i == 0 ? 1.0 : -1.0, h = difference * std::max(std::abs(x[i]), 1e-3);
+      const double inwards = i == 0 ? 1.0 : -1.0,
+                   h = Precision(range.noise).difference * std::max(std::abs(x[i]), 1e-3);
       double near = 0.0;
       if (!search.value(x[i] + inwards * h, near)) continue;
       Peak peak{c, x[i], y[i][c], inwards * (near - y[i][c]) / h,

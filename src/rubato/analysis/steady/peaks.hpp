@@ -26,6 +26,7 @@ struct PeakRange {
   double from = 0.0, to = 0.0;
   int samples = 33;             ///< equally spaced, at least 3
   std::vector<double> besides;  ///< where a narrow peak may be: other samples
+  double noise = 1e-13;         ///< of the curves, relative: what differences have to bear
 };
 
 /// Where some curves have local extremes, for PeakRange::besides: with them as samples, a maximum and its neighbours
@@ -38,8 +39,8 @@ std::vector<double> find_extremes(const Curves& curves, const PeakRange& range, 
 
 /// All local maxima between the samples, each where its slope vanishes: bracketed by the samples, approached by
 /// parabolas (Brent 1973), and finished by Newton's method on central differences of 3e-6 x, which place the maximum of
-/// curves exact to 1e-13 within 1e-9 x. Where points on the way have no value the best that has one stands for the
-/// maximum, which is not closed. The highest first.
+/// curves exact to 1e-13 within 1e-9 x; of more noise with its cube root and that squared. Where points on the way have
+/// no value the best that has one stands for the maximum, which is not closed. The highest first.
 std::vector<Peak> find_peaks(const Curves& curves, const PeakRange& range);
 
 /// The maximum that a known one has become after a small change of the curves; nothing if it is gone.

@@ -1,9 +1,11 @@
+#include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/steady/steady_plan.hpp>
 #include <rubato/model/load_laws.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace rubato::analysis {
 namespace {
@@ -120,6 +122,35 @@ void require_effect(const ParameterDependence& dependence, std::size_t parameter
     throw InvalidInput(named.where, fmt::format("{}the {} \"{}\" would head a column of results that has another "
                                                 "meaning; rename it",
                                                 title, kind, named.name));
+}
+
+void require_about(const std::optional<Location>& about_equilibrium, const StudyInput& input, const Location& where,
+                   const std::string& title) {
+  if (!input.kind.is_constrained()) {
+    if (about_equilibrium)
+      throw InvalidInput(*about_equilibrium,
+                         title +
+                             "about = \"static\" is of mechanisms; a structure answers as it is, and its static loads "
+                             "are among those of the response: leave it out");
+    return;
+  }
+  if (!about_equilibrium)
+    throw InvalidInput(where, title +
+                                  "a mechanism (bodies, joints, geometrically exact beams) answers harmonic loads by "
+                                  "small motions about its static equilibrium: add about = \"static\", or run a "
+                                  "transient");
+  refuse_beyond_small_motions(input, where, title);
+}
+
+std::function<bool(std::size_t)> model_dependence(const StudyInput& input, const ParameterDependence& dependence,
+                                                  std::vector<std::size_t> varied) {
+  if (!input.kind.is_constrained())
+    return [&](std::size_t parameter) { return dependence.reaches(parameter, Role::structure); };
+  auto still = std::make_shared<const model::StudyDescription>(without_harmonic_loads(input.study));
+  const StudyInput at_rest{*still, input.overrides, input.parameters, input.kind};
+  return [still, of_rest = dependence_of(at_rest, std::move(varied))](std::size_t parameter) {
+    return of_rest.reaches_model(parameter);
+  };
 }
 
 }  // namespace rubato::analysis

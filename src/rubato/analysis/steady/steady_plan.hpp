@@ -3,6 +3,7 @@
 #include <rubato/analysis/parameter_dependence.hpp>
 #include <rubato/analysis/study_input.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,6 +45,17 @@ std::vector<std::string> warn_of_settings(const StudyInput& input,
 /// @param kind  what it is called: "swept parameter"
 void require_effect(const ParameterDependence& dependence, std::size_t parameter, const NamedParameter& named,
                     const std::vector<std::string>& columns, const std::string& kind, const std::string& title);
+
+/// Throws InvalidInput unless a mechanism is asked for about its static equilibrium, and a structure as it is.
+/// @param about_equilibrium  where that was asked for
+void require_about(const std::optional<Location>& about_equilibrium, const StudyInput& input, const Location& where,
+                   const std::string& title);
+
+/// Whether what is assembled depends on a parameter: of a mechanism all that its equilibrium does. It refers to the
+/// dependence.
+/// @param varied  places of the parameters that take other values
+std::function<bool(std::size_t)> model_dependence(const StudyInput& input, const ParameterDependence& dependence,
+                                                  std::vector<std::size_t> varied);
 
 /// Whether any of some points of a plan can be made. Where none can, the first says why.
 class Possibility {

@@ -317,12 +317,27 @@ void fields(auto& visit, DamperCurveDescription& task) {
                         {.unit = "rad/s", .says = "where peaks are looked for"},
                         {.unit = "Hz", .says = "instead of angular_frequency"});
   excitation_fields(visit, task);
-  visit.word(
-      "objective", task.objective, {{"amplitude", Objective::amplitude}, {"dissipated", Objective::dissipated}},
-      {.says =
-           "the largest of the observed amplitudes, to be lowered, or the friction work of all sliders, to be raised",
-       .unless = "amplitude"});
+  visit.word("objective", task.objective, {{"amplitude", Objective::amplitude}, {"dissipated", Objective::dissipated}},
+             {.says = "the largest of the observed amplitudes, to be lowered, or the work of all that rubs (sliders, "
+                      "contacts, laws), to be raised",
+              .unless = "amplitude"});
   visit.where(task.objective_where, "objective");
+  using Route = FrequencyResponseDescription::Route;
+  Route route = Route::periodic;
+  visit.word("solver", route, {{"periodic", Route::periodic}, {"harmonic_balance", Route::harmonic_balance}},
+             {.says = "the route", .unless = "chosen by what the model has and by cost"});
+  visit.where_given(task.route_where, "solver");
+  if (task.route_where.line > 0) task.route = route;
+  visit.quantity("tolerance", task.tolerance,
+                 {.unit = "-",
+                  .says = "of harmonic_balance: relative error wanted of the amplitudes, between 0 and 1",
+                  .unless = "1e-4, with laws and contacts 1e-3"});
+  bool is_static = false;
+  visit.word(
+      "about", is_static, {{"static", true}},
+      {.says = "of a mechanism: small motions about its static equilibrium, where the harmonic loads are left out",
+       .unless = "a structure answers as it is"});
+  if (is_static) visit.where(task.about_equilibrium.emplace(), "about");
   visit.flag("optimum", task.optimum, {.says = "refine the best value and certify it", .unless = "true"});
   observe_field(visit, task.observe);
 }

@@ -24,27 +24,17 @@ constexpr int most_brief_iterations = 60, most_limited_iterations = 300, most_fu
 // followed up to this multiple of the fundamental.
 constexpr double most_work = 1e9, followed = 1000.0;
 
-// An answer whose error falls as one over its orders is twice as far off as from that with two thirds of the orders.
-constexpr double caution = 2.0;
-
-// Orders that groups of laws begin with.
-constexpr int fewest_for_groups = 8;
-
-// The orders a step adds: enough to pay for solving again.
-int more(int count) { return count + std::max(1, count / 2); }
-/// Orders to which a step adds about so many.
-int fewer(int count) { return std::max(1, (2 * count + 2) / 3); }
-
 // Samples of laws: some for each of the orders, and so many that what they change takes this share of the tolerance.
 constexpr int most_samples = 1 << 14;
 constexpr double share_of_samples = 0.1;
+
+}  // namespace
+
 int samples_for(const Orders& orders, int wanted) {
   int samples = 128;
   while (samples < 8 * (orders.highest() + 4)) samples *= 2;
   return std::max(samples, wanted);
 }
-
-}  // namespace
 
 HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonlinear& s, SteadyRequest r,
                                                       HarmonicBalanceOptions o)
@@ -178,6 +168,7 @@ HarmonicBalanceSolver::HarmonicBalanceSolver(const system::LocallyNonlinear& sys
 HarmonicBalanceSolver::~HarmonicBalanceSolver() = default;
 
 void HarmonicBalanceSolver::forget() { implementation_->forget(); }
+
 int HarmonicBalanceSolver::highest_order() const { return implementation_->series.orders.highest(); }
 
 void HarmonicBalanceSolver::solve(const system::Excitation& excitation, SteadyStart start, SteadyResponse& response) {
@@ -221,6 +212,7 @@ void HarmonicBalanceSolver::solve(const system::Excitation& excitation, SteadySt
 // error; has_answer is false where there is none.
 bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& excitation, Effort effort,
                                                     SteadyResponse& response) {
+  if (held_to) return attempt_held(excitation, effort, response);
   auto& eq = equations.front();
   const Index m = stiffness.size();
   const bool is_symmetric = excitation.is_half_wave_symmetric() && offsets.isZero(0.0) && laws_are_odd;
@@ -249,7 +241,8 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
   for (;;) {
     const Orders orders{stride, count};
     const int probes = orders_to_probe(excitation, orders);
-    eq.set_samples(samples_for(orders, samples_wanted));
+    samples_used = samples_for(orders, samples_wanted);
+    eq.set_samples(samples_used);
     can_condense = condense(excitation, stride, count + probes, !is_symmetric);
     if (!can_condense) return false;
     bool has_start = has_solution;

@@ -47,6 +47,8 @@ class HarmonicBalanceSolver final : public SteadySolver {
   void solve(const system::Excitation& excitation, SteadyStart start, SteadyResponse& response) override;
   Waveform waveform(int points) const override;
   void forget() override;
+  SteadyDiscretisation discretisation() const override;
+  void hold(const std::optional<SteadyDiscretisation>& held, bool with_error = true) override;
 
   /// The highest order balanced at the last point.
   int highest_order() const;

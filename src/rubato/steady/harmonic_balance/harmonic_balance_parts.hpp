@@ -5,11 +5,26 @@
 #include <rubato/steady/periodic/periodic_solver.hpp>
 #include <rubato/steady/undamped_resonance.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 // What the parts of HarmonicBalanceSolver share; nobody else includes this.
 namespace rubato::steady {
+
+/// An answer whose error falls as one over its orders is twice as far off as from that with two thirds of the orders.
+inline constexpr double caution = 2.0;
+
+/// Orders that groups of laws begin with.
+inline constexpr int fewest_for_groups = 8;
+
+/// The orders a step adds: enough to pay for solving again.
+inline int more(int count) { return count + std::max(1, count / 2); }
+/// Orders to which a step adds about so many.
+inline int fewer(int count) { return std::max(1, (2 * count + 2) / 3); }
+
+/// Samples of laws in a period: some for each of the orders, and at least those wanted.
+int samples_for(const Orders& orders, int wanted);
 
 struct HarmonicBalanceSolver::Implementation {
   Implementation(const system::LocallyNonlinear& s, SteadyRequest r, HarmonicBalanceOptions o);
@@ -38,6 +53,7 @@ struct HarmonicBalanceSolver::Implementation {
   bool is_driven_beyond_friction(const system::Excitation& excitation);
   int orders_to_probe(const system::Excitation& excitation, const Orders& orders) const;
   bool attempt(const system::Excitation& excitation, Effort effort, SteadyResponse& response);
+  bool attempt_held(const system::Excitation& excitation, Effort effort, SteadyResponse& response);
   bool predict(double angular_frequency, const Orders& orders, bool with_mean);
   bool newton(const system::Excitation& excitation, bool has_start, bool has_solution, Effort effort,
               SteadyResponse& response);
@@ -96,6 +112,9 @@ struct HarmonicBalanceSolver::Implementation {
   std::vector<Past> past;  ///< newest first
   std::vector<const Past*> usable;
   int count_wanted = 1;
+  std::optional<SteadyDiscretisation> held_to;  ///< of all points, whatever its error
+  bool held_with_error = true;
+  int samples_used = 0;  ///< of laws, at the last balance
 
   system::Excitation last;      ///< the point solved last, for its waveform
   ComplexMatrix column_forces;  ///< forces on the driven columns of each place [m + e x places]

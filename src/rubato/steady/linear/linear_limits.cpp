@@ -13,6 +13,7 @@ namespace {
 using SparseComplex = Eigen::SparseMatrix<std::complex<double>>;
 
 constexpr Index largest_dense = 64;
+constexpr Index largest_all_modes = 400, most_modes = 200;  // of natural frequencies
 
 ComplexVector solve(const SparseMatrix& stiffness, const system::LocallyNonlinear& system, double angular_frequency,
                     const ComplexVector& load) {
@@ -111,10 +112,17 @@ system::State nearer_linear_limit(const system::LocallyNonlinear& system, const 
   return state;
 }
 
-Vector natural_frequencies(const system::LocallyNonlinear& system) {
-  const Vector free = numerics::all_modes(system.stiffness(), system.mass()).eigenvalues;
-  if (!system.has_friction()) return free.cwiseMax(0.0).cwiseSqrt();
-  const Vector stuck = numerics::all_modes(system.stuck_stiffness(), system.mass()).eigenvalues;
+Vector natural_frequencies(const system::LocallyNonlinear& system, double highest) {
+  const auto squares = [&](const SparseMatrix& stiffness) -> Vector {
+    if (system.size() <= largest_all_modes) return numerics::all_modes(stiffness, system.mass()).eigenvalues;
+    const auto below = numerics::modes_below(stiffness, system.mass(), highest * highest);
+    if (!below || *below == 0 || *below > most_modes) return {};
+    return numerics::lowest_modes(stiffness, system.mass(), *below).eigenvalues;
+  };
+  const bool has_laws = system.has_laws();
+  const Vector free = squares(has_laws ? with_linear_laws(system, false).stiffness() : system.stiffness());
+  if (!has_laws && !system.has_friction()) return free.cwiseMax(0.0).cwiseSqrt();
+  const Vector stuck = squares(has_laws ? with_linear_laws(system, true).stuck_stiffness() : system.stuck_stiffness());
   Vector both(free.size() + stuck.size());
   both << free, stuck;
   return both.cwiseMax(0.0).cwiseSqrt();

@@ -18,7 +18,8 @@ system::LocallyNonlinear with_linear_laws(const system::LocallyNonlinear& system
 /// rest.
 system::State nearer_linear_limit(const system::LocallyNonlinear& system, const system::Excitation& excitation);
 
-/// Natural frequencies without sliders and with all of them stuck, one limit after the other [rad/s].
-Vector natural_frequencies(const system::LocallyNonlinear& system);
+/// Natural frequencies of both limits, all sliders removed and stuck and other laws as with_linear_laws() has them, one
+/// limit after the other [rad/s]: all of them or, of large models, those up to `highest` where they can be counted.
+Vector natural_frequencies(const system::LocallyNonlinear& system, double highest = 0.0);
 
 }  // namespace rubato::steady
