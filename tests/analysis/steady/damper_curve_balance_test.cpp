@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/mechanism_response.hpp"
 #include "support/memory_sink.hpp"
 #include "support/prepared_study.hpp"
 #include "support/ran_study.hpp"
@@ -68,7 +69,7 @@ std::string curve_of(const std::string& lines) {
 }
 
 /// Two masses with a slider each, under loads of two orders.
-std::string two_masses(const std::string& second_order = "0.3") {
+std::string coupled_masses(const std::string& second_order = "0.3") {
   std::string text = "[parameters]\nN0 = 1.0\nOmega = 1.0\n";
   for (const auto& [name, mass] : {std::pair{"a", "1.0"}, {"b", "0.7"}})
     text += fmt::format(
@@ -93,7 +94,7 @@ constexpr const char* range = "range = [0.4, 0.8, 1.2, 1.8, 2.6]\nangular_freque
 TEST(DamperCurveByBalance, AgreesWithPeriodicOrbitsWithinItsError) {
   for (const std::string objective : {"", "objective = \"dissipated\"\n"})
     for (const std::string load : {"0", "0.3"}) {
-      const std::string text = two_masses(load) + curve_of(range + objective);
+      const std::string text = coupled_masses(load) + curve_of(range + objective);
       const auto exact = run(text + "solver = \"periodic\"\n"), series = run(text + "solver = \"harmonic_balance\"\n");
       ASSERT_EQ(exact->rows().size(), series->rows().size());
       ASSERT_EQ(exact->rows("peaks").size(), series->rows("peaks").size()) << objective << load;
@@ -121,9 +122,9 @@ TEST(DamperCurveByBalance, AgreesWithPeriodicOrbitsWithinItsError) {
 // Two peaks of one mass under two loads change places: their heights are equal there with either solver.
 TEST(DamperCurveByBalance, FindsTheSameKink) {
   const std::string text =
-      two_masses("0") + curve_of(
-                            "range = { from = 0.2, to = 4, points = 9 }\n"
-                            "angular_frequency = { from = 0.6, to = 2 }\nobserve = [\"a\", \"b\"]\n");
+      coupled_masses("0") + curve_of(
+                                "range = { from = 0.2, to = 4, points = 9 }\n"
+                                "angular_frequency = { from = 0.6, to = 2 }\nobserve = [\"a\", \"b\"]\n");
   const auto exact = run(text + "solver = \"periodic\"\n"), series = run(text + "solver = \"harmonic_balance\"\n");
   EXPECT_EQ(series->kind(), exact->kind());
   EXPECT_NEAR(series->optimum("N0"), exact->optimum("N0"), 2e-3 * exact->optimum("N0"));
@@ -330,6 +331,21 @@ damping = 0.3
   }
 }
 
+// A pendulum without friction: J x'' + c x' + m g l x = F l cos(Omega t), and a warning where its turns are not small.
+TEST(DamperCurveByBalance, TellsOfMechanismsThatTurnFar) {
+  const auto curve = run_mechanism_study(
+      swinging_bob +
+      "[[analysis]]\nname = \"damper\"\ntype = \"damper_curve\"\nparameter = \"F\"\nrange = [0.05, 1.0]\n"
+      "angular_frequency = { from = 2.0, to = 5.0 }\nabout = \"static\"\nobserve = \"bob.rz\"\noptimum = false\n");
+  const double l = 0.8, inertia = 1.5 * l * l + 0.02, stiffness = 1.5 * 9.81 * l, c = 0.35;
+  const double highest = l / (c * std::sqrt(stiffness / inertia - 0.25 * c * c / (inertia * inertia)));
+  EXPECT_NEAR(value_of(curve.sink, "damper", "objective", "", 0), 0.05 * highest, 1e-8 * highest);
+  EXPECT_NEAR(value_of(curve.sink, "damper", "objective", "", 1), highest, 1e-7 * highest);
+  ASSERT_EQ(curve.report.warnings.size(), 1u);
+  EXPECT_THAT(curve.report.warnings[0], HasSubstr("at F = 1 "));
+  EXPECT_THAT(curve.report.warnings[0], HasSubstr("\"bob.rz\" turns by"));
+}
+
 TEST(DamperCurveByBalance, RefusesPeriodicOrbitsOfLargeModelsAndToleranceOfThem) {
   const std::string lines = "range = [1.0, 2.0]\nangular_frequency = { from = 1, to = 2 }\nsolver = \"periodic\"\n";
   const auto fault = [](const std::string& text) -> std::string {
@@ -341,8 +357,8 @@ TEST(DamperCurveByBalance, RefusesPeriodicOrbitsOfLargeModelsAndToleranceOfThem)
     return "none";
   };
   EXPECT_THAT(fault(chain(301) + curve_of(lines)), HasSubstr("take solver = \"harmonic_balance\""));
-  EXPECT_THAT(fault(two_masses() + curve_of(lines + "tolerance = 1e-5\n")), HasSubstr("\"tolerance\" goes with"));
-  EXPECT_THAT(fault(two_masses() + curve_of(lines + "about = \"static\"\n")), HasSubstr("is of mechanisms"));
+  EXPECT_THAT(fault(coupled_masses() + curve_of(lines + "tolerance = 1e-5\n")), HasSubstr("\"tolerance\" goes with"));
+  EXPECT_THAT(fault(coupled_masses() + curve_of(lines + "about = \"static\"\n")), HasSubstr("is of mechanisms"));
 }
 
 }  // namespace

@@ -167,6 +167,9 @@ class Warnings {
     if (counts_.at_ends.count > 0.0)
       warnings.push_back(fmt::format("at {} the largest lies at an end of the frequencies ({}); widen them",
                                      place_of(counts_.at_ends.first), values_text(counts_.at_ends.count)));
+    if (const Tally& far = counts_.excursions; far.count > 0.0)
+      warnings.push_back(
+          fmt::format("at {} {} ({})", place_of(far.first), excursion_of(far.first), values_text(far.count)));
     if (const Tally& unbounded = counts_.of(PointStatus::unbounded); unbounded.count > 0.0)
       warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
                                      place_of(unbounded.first), values_text(unbounded.count)));
@@ -214,6 +217,19 @@ class Warnings {
     family_->take_line(line);
     (void)family_->peaks(plan_.values[value]);
     return family_->scan();
+  }
+
+  /// What the highest peak of a value of a mechanism does beyond small motions.
+  std::string excursion_of(double number) {
+    const std::string any = "the highest peak is no small motion";
+    if (!family_) return any;
+    const auto [line, value] = split(number);
+    family_->take_line(line);
+    const auto peaks = family_->peaks(plan_.values[value]);
+    if (peaks.empty()) return any;
+    (void)family_->response_at(plan_.values[value], peaks.front());
+    const std::string told = family_->excursion();
+    return told.empty() ? any : told;
   }
 
   const DamperCurvePlan& plan_;

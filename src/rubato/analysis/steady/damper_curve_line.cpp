@@ -58,6 +58,7 @@ void count_value(const DamperValue& value, double number, DamperCurveCounts& cou
   counts.of(value.status).note(number);
   counts.unconverged_samples += static_cast<double>(value.scan.by_status[place(PointStatus::not_converged)]);
   for (const long samples : value.scan.by_status) counts.solves += static_cast<double>(samples);
+  if (value.moves_far) counts.excursions.note(number);
   if (value.scan.has_negative_load) counts.negative_loads.note(number);
   if (value.scan.by_status[place(PointStatus::drifting)] > 0) counts.walks.note(number);
   if (value.status == PointStatus::converged && value.peaks.front().kind != Peak::Kind::interior &&
@@ -168,6 +169,7 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
   } else if (!value.peaks.empty()) {
     value.response = family.response_at(parameter, value.peaks.front());
     value.status = point_status(value.response.status);
+    value.moves_far = !family.excursion().empty();
     // Where points beside the highest do not converge it is the best found, and no peak.
     if (value.status == PointStatus::converged && !value.peaks.front().is_closed)
       value.status = PointStatus::not_converged;

@@ -41,6 +41,7 @@ struct DamperValue {
   steady::SteadyResponse response;
   PointStatus status = PointStatus::not_converged;
   DamperPeaks::Scan scan;
+  bool moves_far = false;  ///< of a mechanism: beyond small motions
   std::optional<steady::SteadyDiscretisation> discretisation;
   std::optional<std::array<std::optional<Peak>, 2>> limits;  ///< free and stuck, where they were asked for
 };

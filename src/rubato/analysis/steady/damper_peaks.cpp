@@ -59,6 +59,8 @@ bool DamperPeaks::take(double parameter, bool begins_afresh) {
   values_.back() = parameter;
   try {
     require_structure(plan_.excitation_factor * plan_.from);
+    if (structure_->about)
+      require_swinging_loads(input_.study.model, drive_.parameters_at(values_, plan_.excitation_factor * plan_.from));
     drive_.take_line(values_, structure_->assembled);
     if (begins_afresh)
       for (const auto* solver : {&solver_, &free_, &stuck_})
@@ -267,6 +269,13 @@ const steady::SteadyResponse& DamperPeaks::response_at(double parameter, const P
     response_.error = std::max(response_.error, apart / std::abs(peak.value));
   if (!(response_.error <= plan_.route.tolerance)) response_.status = steady::SteadyStatus::not_converged;
   return response_;
+}
+
+std::string DamperPeaks::excursion() const {
+  constexpr int samples = 64;
+  if (!structure_ || !structure_->about || !response_.amplitude.allFinite() || response_.amplitude.size() == 0)
+    return {};
+  return structure_->about->told(structure_->about->excursion(solver_->waveform(samples).position));
 }
 
 }  // namespace rubato::analysis

@@ -37,6 +37,9 @@ class DamperPeaks final : public PeakFamily {
   /// where it is truncated, and errs or differs from the peak by more than the tolerance, it is not converged.
   const steady::SteadyResponse& response_at(double parameter, const Peak& peak);
 
+  /// How a mechanism leaves the small motions about its equilibrium in the last `response_at`; empty where it does not.
+  std::string excursion() const;
+
   /// With what the response behind the last `peaks` was truncated; unset where it is not.
   const std::optional<steady::SteadyDiscretisation>& discretisation() const { return held_; }
   /// From now on all values are solved with one discretisation, so that they can be differentiated over the parameter;
