@@ -79,7 +79,8 @@ STUDIES = {
                                 "angular_frequency = { from = 1, to = 3, points = 100 }\n",
     "time_marching": STIFF + 'type = "frequency_response"\nsolver = "time_marching"\nsteps_per_period = 3000000\n'
                              "angular_frequency = { from = 0.8, to = 2, points = 100 }\n",
-    "damper_curve": STIFF + 'type = "damper_curve"\nparameter = "N0"\nrange = { from = 0.8, to = 2, points = 20 }\n'
+    "damper_curve": STIFF + 'type = "damper_curve"\nparameter = "N0"\nsolver = "periodic"\n'
+                            "range = { from = 0.8, to = 2, points = 20 }\n"
                             "angular_frequency = { from = 0.8, to = 2 }\n",
     "exact": STIFF + 'type = "transient"\nmethod = "exact"\nduration = 1e4\noutput = { times = [1e4] }\n',
     "automatic": CHAIN + 'type = "transient"\nstep = { tolerance = 1e-3 }\nduration = 1e4\noutput = { times = [1e4] }\n',
