@@ -25,6 +25,7 @@ const Friction laws[] = {
      "bristle_stiffness = 20.0\nbristle_damping = 0.3\nviscous_damping = 0.1\ncoulomb_force = 0.4\n"
      "static_force = 0.6\nstribeck_velocity = 0.1\n"},
     {"iwan", "stiffness = 20.0\nslip_force = 0.5\nchi = -0.5\nbeta = 0.2\n"},
+    {"bouc_wen", "stiffness = 20.0\nbeta = 20.0\ngamma = 15.0\ndegradation = { A = 0.02, nu = 0.2, eta = 0.1 }\n"},
     {"cable", "stiffness = 20.0\nlength = 0.01\n"}};
 
 std::string law(const Friction& one, const std::string& where) {

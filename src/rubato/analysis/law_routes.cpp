@@ -165,9 +165,11 @@ std::optional<std::string> refusal(Route route, const integrate::SystemKind& kin
   return fmt::format("{} does not take {}; {}", title_of(route), label, of(*refused).instead);
 }
 
-std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind) {
+std::optional<std::string> refusal_of_steady_response(const integrate::SystemKind& kind) {
   for (const NonlinearPart& part : kind.nonlinear_parts())
-    if (part.depends_on_time && part.family == NonlinearPart::Family::contact)
+    if (*part.why_no_steady_response != '\0')
+      return fmt::format("the {} \"{}\" {}", part.kind, part.name, part.why_no_steady_response);
+    else if (part.depends_on_time && part.family == NonlinearPart::Family::contact)
       return fmt::format(
           "the contact \"{}\" slides on with its sliding_velocity, which steady responses do not carry yet; leave it "
           "out, or run a transient; modes with contacts = [{{ sliding = {{ {} = 1 }} }}] tell whether it flutters",

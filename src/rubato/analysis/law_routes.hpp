@@ -42,7 +42,8 @@ const char* title_of(Route route);
 /// Why a route cannot take the parts of a model, and what can; nothing where it can.
 std::optional<std::string> refusal(Route route, const integrate::SystemKind& kind);
 
-/// Why no steady response follows from the laws of a model: one depends on time. Nothing where none does.
-std::optional<std::string> refusal_of_time(const integrate::SystemKind& kind);
+/// Why no steady response follows from the laws of a model: one depends on time, or never repeats. Nothing where all
+/// are fit for one.
+std::optional<std::string> refusal_of_steady_response(const integrate::SystemKind& kind);
 
 }  // namespace rubato::analysis

@@ -122,7 +122,7 @@ void plan_route(DamperCurvePlan& plan, const Description& description, const Stu
   using Kind = steady::SteadyRoute::Kind;
   const auto& system = plan.system(input);
   const Location at = place_or(description.route_where, where);
-  if (const auto of_time = refusal_of_time(input.kind)) throw InvalidInput(where, title + *of_time);
+  if (const auto of_time = refusal_of_steady_response(input.kind)) throw InvalidInput(where, title + *of_time);
   if (description.route) {
     plan.route.kind = *description.route;
     if (const auto reason = refusal(plan.is_truncated() ? Route::harmonic_balance : Route::periodic, input.kind))

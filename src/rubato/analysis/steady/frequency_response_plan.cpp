@@ -120,7 +120,7 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
   const Route route = route_of(description.route);
   const auto reason = refusal(route, input.kind);
   if (reason) throw InvalidInput(place(description.route_where, where), title + *reason);
-  if (const auto of_time = refusal_of_time(input.kind)) throw InvalidInput(where, title + *of_time);
+  if (const auto of_time = refusal_of_steady_response(input.kind)) throw InvalidInput(where, title + *of_time);
   plan.route.kind = description.route;
   if (description.tolerance) {
     plan.route.tolerance = model::evaluate(*description.tolerance, input.parameters, title + "tolerance");

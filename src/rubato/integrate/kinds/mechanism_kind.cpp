@@ -3,6 +3,7 @@
 #include <rubato/integrate/kinds/mechanism_start_state.hpp>
 #include <rubato/integrate/mechanism/mechanism_equilibrium.hpp>
 #include <rubato/integrate/mechanism/mechanism_modes.hpp>
+#include <rubato/model/laws/only_transient.hpp>
 
 #include <fmt/format.h>
 
@@ -56,7 +57,7 @@ std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
     parts.push_back({law.normal.formula || law.normal.depends_on_motion() || law.reaction.presses()
                          ? NonlinearPart::Family::pressed_slider
                          : NonlinearPart::Family::law,
-                     law.kind, law.name, law.depends_on_time()});
+                     law.kind, law.name, law.depends_on_time(), false, model::why_no_steady_response(*law.law)});
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
   for (const auto& lock : model.locks)

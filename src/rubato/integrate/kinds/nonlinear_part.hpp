@@ -19,7 +19,8 @@ struct NonlinearPart {
   std::string kind;  ///< of a law: its table in the study file
   std::string name;
   bool depends_on_time = false;
-  bool is_spring = false;  ///< of a stop or lock of a mechanism: without damping
+  bool is_spring = false;                   ///< of a stop or lock of a mechanism: without damping
+  const char* why_no_steady_response = "";  ///< of a law that only transients carry, as model::OnlyTransient says it
 };
 
 }  // namespace rubato::integrate

@@ -1,6 +1,7 @@
 #include <rubato/core/stopping_aside.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
 #include <rubato/integrate/kinds/structure_kind.hpp>
+#include <rubato/model/laws/only_transient.hpp>
 
 #include <fmt/format.h>
 
@@ -59,10 +60,12 @@ std::vector<NonlinearPart> StructureKind::nonlinear_parts() const {
   for (const auto& law : system_.laws()) {
     const bool is_pressed = law.law->takes_normal() && (law.normal.formula || law.normal.depends_on_motion());
     parts.push_back({is_pressed ? NonlinearPart::Family::pressed_slider : NonlinearPart::Family::law, law.kind,
-                     law.name, law.law->depends_on_time() || law.normal.formula});
+                     law.name, law.law->depends_on_time() || law.normal.formula, false,
+                     model::why_no_steady_response(*law.law)});
   }
   for (const auto& block : system_.blocks())
-    parts.push_back({NonlinearPart::Family::contact, block.kind, block.name, block.law->sliding_velocity() != 0.0});
+    parts.push_back({NonlinearPart::Family::contact, block.kind, block.name, block.law->sliding_velocity() != 0.0,
+                     false, model::why_no_steady_response(*block.law)});
   return parts;
 }
 

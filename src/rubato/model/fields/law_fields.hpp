@@ -3,6 +3,9 @@
 #include <rubato/model/description.hpp>
 #include <rubato/model/fields/key.hpp>
 
+#include <cstring>
+#include <string>
+
 // The keys of coordinates and of what acts between two of them: springs, dampers, sliders, stops and other laws; and of
 // [damping].
 namespace rubato::model {
@@ -76,6 +79,22 @@ void fields(auto& visit, Like<StopDescription> auto& stop) {
                  {.unit = "N s/m", .says = "c while closed; the force never pulls", .unless = "0"});
 }
 
+/// The table in which a key of a law is, of "degradation.A" that is "degradation"; empty: beside the others.
+inline std::string table_of(const LawKey& key) {
+  const char* dot = std::strchr(key.name, '.');
+  return dot ? std::string(key.name, dot) : std::string();
+}
+
+void law_key(auto& visit, const LawKey& key, auto& value) {
+  const Key about{.required = !key.preset, .unit = key.unit, .says = key.meaning, .unless = key.unless.c_str()};
+  const char* dot = std::strchr(key.name, '.');
+  const char* name = dot ? dot + 1 : key.name;
+  if (key.type == LawKey::Type::formula)
+    visit.formula(name, value, about);
+  else
+    visit.quantity(name, value, about);
+}
+
 /// Of the kinds of model/laws: each says its own keys.
 void fields(auto& visit, Like<LawDescription> auto& law) {
   const LawKind& kind = law_kind(law.kind);
@@ -92,13 +111,18 @@ void fields(auto& visit, Like<LawDescription> auto& law) {
     if (!law.shares.empty()) reader.refuse_beside("shares", {"between"});
     if (law.joint.empty() && law.shares.empty() && law.between[0].empty()) reader.refuse_to_lack("between");
   });
-  for (std::size_t i = 0; i < kind.keys.size(); ++i) {
-    const LawKey& key = kind.keys[i];
-    const Key about{.required = !key.preset, .unit = key.unit, .says = key.meaning, .unless = key.unless.c_str()};
-    if (key.type == LawKey::Type::formula)
-      visit.formula(key.name, law.values[i], about);
-    else
-      visit.quantity(key.name, law.values[i], about);
+  for (std::size_t i = 0; i < kind.keys.size();) {
+    const std::string table = table_of(kind.keys[i]);
+    if (table.empty()) {
+      law_key(visit, kind.keys[i], law.values[i]);
+      ++i;
+      continue;
+    }
+    const std::size_t first = i;
+    while (i < kind.keys.size() && table_of(kind.keys[i]) == table) ++i;
+    visit.part(table.c_str(), {.says = "what of it changes, each of these 0 where it is left out"}, [&](auto& inner) {
+      for (std::size_t j = first; j < i; ++j) law_key(inner, kind.keys[j], law.values[j]);
+    });
   }
 }
 

@@ -1,4 +1,5 @@
 #include <rubato/core/error.hpp>
+#include <rubato/model/laws/degrading_bouc_wen.hpp>
 #include <rubato/model/laws/law_kind.hpp>
 #include <rubato/model/laws/law_slopes.hpp>
 #include <rubato/numerics/gauss_legendre.hpp>
@@ -335,9 +336,9 @@ class Elastic final : public Law {
 
 std::shared_ptr<const Law> make(const LawDescription& description, const numerics::Parameters& parameters,
                                 const std::string& part) {
-  enum { stiffness, ratio, a, beta, gamma, n };
-  std::array<double, 6> value;
-  for (std::size_t i = 0; i < value.size(); ++i)
+  enum { stiffness, ratio, a, beta, gamma, n, a_loss, nu_gain, eta_gain };
+  std::array<double, 9> value{};
+  for (std::size_t i = 0; i < std::min(value.size(), description.values.size()); ++i)
     value[i] = evaluate(description.values[i], parameters, part + ": " + law_kind("bouc_wen").keys[i].name);
   const auto refuse = [&](std::size_t key, const std::string& why) {
     throw InvalidInput(description.values[key].where.line > 0 ? description.values[key].where : description.where,
@@ -353,12 +354,37 @@ std::shared_ptr<const Law> make(const LawDescription& description, const numeric
                               value[beta] + value[gamma]));
   if (!(value[beta] >= 0.0))
     refuse(beta, fmt::format("beta must not be negative, got {}: loops would make energy", value[beta]));
+  for (const std::size_t key : {a_loss, nu_gain, eta_gain})
+    if (!(value[key] >= 0.0))
+      refuse(key, fmt::format("{} must not be negative, got {}: it would heal with the work done on it",
+                              law_kind("bouc_wen").keys[key].name, value[key]));
   if (value[ratio] == 1.0) return std::make_shared<Elastic>(value[stiffness]);
+  if (value[a_loss] > 0.0 || value[nu_gain] > 0.0 || value[eta_gain] > 0.0)
+    return make_degrading_bouc_wen({value[ratio] * value[stiffness], (1.0 - value[ratio]) * value[stiffness], value[a],
+                                    value[beta], value[gamma], value[n], value[a_loss], value[nu_gain],
+                                    value[eta_gain]});
   return std::make_shared<BoucWen>(value[stiffness], value[ratio], value[a], value[beta], value[gamma], value[n]);
+}
+
+/// What is left of the energy that spends an element where A falls with the work: it is used up before it has yielded.
+std::string doubt_of_degradation(const LawDescription& description, const numerics::Parameters& parameters) {
+  if (description.values.size() < 9) return {};
+  std::array<double, 9> value;
+  for (std::size_t i = 0; i < value.size(); ++i) value[i] = evaluate(description.values[i], parameters, "value");
+  const auto [stiffness, ratio, a, beta, gamma, n, a_loss, nu_gain, eta_gain] = value;
+  if (!(a_loss > 0.0 && beta + gamma > 0.0 && ratio < 1.0)) return {};
+  const double limit = std::pow(a / (beta + gamma), 1.0 / n), yield = (1.0 - ratio) * stiffness * limit * limit / a;
+  if (!(a / a_loss < yield)) return {};
+  return fmt::format(
+      "degradation.A is {:.6g} /J, so that A is used up by {:.6g} J, and one way to its limit takes some {:.6g} J: it "
+      "is "
+      "spent before it yields; degradation is per joule of work",
+      a_loss, a / a_loss, yield);
 }
 
 /// Erlicher and Point 2004: beyond |gamma| <= beta some motions take energy out of the element.
 std::string doubt(const LawDescription& description, const numerics::Parameters& parameters) {
+  if (std::string why = doubt_of_degradation(description, parameters); !why.empty()) return why;
   const double beta = evaluate(description.values[3], parameters, "beta");
   const double gamma = evaluate(description.values[4], parameters, "gamma");
   constexpr double rounded = 1e-6;  // what numbers of a few digits make of |gamma| = beta
@@ -382,7 +408,10 @@ LawKind bouc_wen() {
            {"A", Type::number, "", 1.0, "the slope of z against u at z = 0"},
            {"beta", Type::number, "1/m^n", 0.5, "how much steeper it unloads than it loads"},
            {"gamma", Type::number, "1/m^n", 0.5, "with beta the limit of z, (A / (beta + gamma))^(1/n)"},
-           {"n", Type::number, "", 1.0, "how sharply it yields"}},
+           {"n", Type::number, "", 1.0, "how sharply it yields"},
+           {"degradation.A", Type::number, "1/J", 0.0, "what A loses with each joule of work e done on it"},
+           {"degradation.nu", Type::number, "1/J", 0.0, "what nu = 1 + ... e gains, which weakens it"},
+           {"degradation.eta", Type::number, "1/J", 0.0, "what eta = 1 + ... e gains, which softens it"}},
           make,
           doubt};
 }
