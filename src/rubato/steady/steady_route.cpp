@@ -25,6 +25,7 @@ std::unique_ptr<SteadySolver> periodic(const SteadyRoute& route, const LocallyNo
 std::unique_ptr<SteadySolver> harmonic_balance(const SteadyRoute& route, const LocallyNonlinear& system,
                                                const SteadyRequest& request) {
   HarmonicBalanceOptions options;
+  options.sweep = route.linear;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
   return std::make_unique<HarmonicBalanceSolver>(system, request, options);
 }
@@ -59,7 +60,9 @@ SteadySolvers steady_solvers(const SteadyRoute& route) {
     return linear(route, system, request, true);
   };
   solvers.coarse = [route](const LocallyNonlinear& system, const SteadyRequest& request) {
-    return is_linear(system) ? linear(route, system, request, false) : harmonic_balance({}, system, request);
+    SteadyRoute coarse;
+    coarse.linear = route.linear;
+    return is_linear(system) ? linear(route, system, request, false) : harmonic_balance(coarse, system, request);
   };
   solvers.response = [route](const LocallyNonlinear& system,
                              const SteadyRequest& request) -> std::unique_ptr<SteadySolver> {

@@ -181,6 +181,8 @@ class SparseFactorisation final : public CondensedStructure::Route {
                       position);
   }
 
+  double fill() const override { return stiffness_->fill(); }
+
  private:
   static double largest(const ComplexVector& x) {
     return x.size() > 0 ? std::sqrt(x.cwiseAbs2().maxCoeff()) : 0.0;  // squares: moduli cost more than the solution

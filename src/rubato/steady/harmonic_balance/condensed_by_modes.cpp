@@ -158,9 +158,13 @@ std::unique_ptr<CondensedStructure::Route> real_modes(const Columns& columns) {
   return std::make_unique<RealModes>(columns, shapes, modes.eigenvalues, damping);
 }
 
-std::unique_ptr<CondensedStructure::Route> complex_modes(const Columns& columns) {
-  const Index n = columns.system.size();
-  const Matrix mass = columns.system.mass(), damping = columns.system.damping(), stiffness = columns.system.stiffness();
+namespace {
+
+/// @param basis  vectors that the matrices are of [n x r]; null: the coordinates
+std::unique_ptr<CondensedStructure::Route> complex_modes_of(const Columns& columns, const Matrix& mass,
+                                                            const Matrix& damping, const Matrix& stiffness,
+                                                            const Matrix* basis) {
+  const Index n = mass.rows();
   Matrix state = Matrix::Zero(2 * n, 2 * n);
   const Eigen::PartialPivLU<Matrix> inverse(mass);
   state.topRightCorner(n, n).setIdentity();
@@ -197,7 +201,31 @@ std::unique_ptr<CondensedStructure::Route> complex_modes(const Columns& columns)
       return nullptr;
     shapes.col(r) *= std::sqrt(scale);
   }
+  if (basis) shapes = (*basis * shapes).eval();
   return std::make_unique<ComplexModes>(columns, shapes, roots);
+}
+
+}  // namespace
+
+std::unique_ptr<CondensedStructure::Route> complex_modes(const Columns& columns) {
+  return complex_modes_of(columns, columns.system.mass(), columns.system.damping(), columns.system.stiffness(),
+                          nullptr);
+}
+
+std::unique_ptr<CondensedStructure::Route> modes_in_basis(const Columns& columns, const Matrix& basis,
+                                                          const numerics::SymmetricModes& modes,
+                                                          const Matrix& reduced_damping) {
+  const Matrix shapes = basis * modes.shapes;
+  const Matrix modal = modes.shapes.transpose() * reduced_damping * modes.shapes;
+  const Vector damping = modal.diagonal();
+  const Matrix rest = modal - Matrix(damping.asDiagonal());
+  const Vector size = damping.cwiseAbs().cwiseSqrt();
+  // Beside the diagonal is the round-off of the basis: what it does to a response is as its square.
+  const double round_off = 1e-12 * damping.cwiseAbs().maxCoeff();
+  if ((rest.cwiseAbs().array() <= 1e-6 * (size * size.transpose()).array() + round_off).all())
+    return std::make_unique<RealModes>(columns, shapes, modes.eigenvalues, damping);
+  return complex_modes_of(columns, Matrix::Identity(size.size(), size.size()), modal, modes.eigenvalues.asDiagonal(),
+                          &shapes);
 }
 
 }  // namespace rubato::steady

@@ -9,6 +9,8 @@ namespace {
 
 constexpr Index most_state_space = 60;  // coordinates: the eigenproblem takes 25 (2n)^3 operations, unsymmetric
 constexpr Index most_dense = 300;       // coordinates, where C is sparse
+constexpr Index least_points = 20;      // of a sweep, for which a basis is worth its making
+constexpr double direct_fill = 10.0;    // entries of a factor a row: below (chains) it costs little
 constexpr double full = 0.05;           // part of C that is not zero, from which it counts as a full matrix
 
 // kT, or what the structure itself has at the ends of the slider, or anywhere: stiffer springs would take the digits of
@@ -50,7 +52,7 @@ double holding_stiffness_of_law(const system::LocallyNonlinear& system, Index co
 }  // namespace
 
 CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
-                                       const std::vector<SteadyRequest::Observed>& observed) {
+                                       const std::vector<SteadyRequest::Observed>& observed, const LinearSweep& sweep) {
   const Index n = system.size(), sliders = system.slider_count(), m = system.contact_count();
   columns_ =
       std::make_unique<Columns>(Columns{system, Vector(m), Vector(m), Matrix::Zero(n, m), Matrix(n, 0), observed});
@@ -70,6 +72,8 @@ CondensedStructure::CondensedStructure(const system::LocallyNonlinear& system,
   factorisation_ = is_small ? dense_factorisation(*columns_) : sparse_factorisation(*columns_);
   if (is_small) route_ = real_modes(*columns_);
   if (!route_ && n <= most_state_space) route_ = complex_modes(*columns_);
+  if (!is_small && sweep.points >= least_points && sweep.highest > 0.0)
+    route_ = reduced_modes(*columns_, sweep.highest);
 }
 
 CondensedStructure::~CondensedStructure() = default;
@@ -87,13 +91,16 @@ void CondensedStructure::set_loads(const Matrix& patterns) {
   factorisation_->set_loads();
 }
 
+CondensedStructure::Route& CondensedStructure::route(double w, double held) {
+  return route_ && held == 0.0 && route_->reaches(w) ? *route_ : *factorisation_;
+}
+
 CondensedStructure::Outcome CondensedStructure::condense(double w, double held, ComplexMatrix& receptance) {
-  Route& route = route_ && held == 0.0 ? *route_ : *factorisation_;
-  return route.condense(w, held, receptance);
+  return route(w, held).condense(w, held, receptance);
 }
 
 void CondensedStructure::expand(double w, double held, const ComplexVector& forces, ComplexVector& position) {
-  (route_ && held == 0.0 ? *route_ : *factorisation_).expand(w, held, forces, position);
+  route(w, held).expand(w, held, forces, position);
 }
 
 double CondensedStructure::highest_frequency() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/steady/linear/linear_response.hpp>
 #include <rubato/steady/steady_solver.hpp>
 
 #include <memory>
@@ -20,11 +21,14 @@ double contact_stiffness(const system::LocallyNonlinear& system, Index contact);
 /// structure, so that Z keeps its digits beside rigid contacts.
 ///
 /// Routes: real modes where they diagonalise C; the state-space modes (complex) of a small structure where they form a
-/// basis; else a factorisation of Z for each w, sparse for large structures. Where the structure is in resonance the
-/// modes give way to the factorisation.
+/// basis; else a factorisation of Z for each w, sparse for large structures. These go by modes in a small basis where
+/// many frequencies are wanted (see reduced_modes). Where the structure is in resonance the modes give way to the
+/// factorisation.
 class CondensedStructure {
  public:
-  CondensedStructure(const system::LocallyNonlinear& system, const std::vector<SteadyRequest::Observed>& observed);
+  /// @param sweep  how many frequencies will be asked for
+  CondensedStructure(const system::LocallyNonlinear& system, const std::vector<SteadyRequest::Observed>& observed,
+                     const LinearSweep& sweep = {});
   ~CondensedStructure();
   CondensedStructure(CondensedStructure&&) noexcept;
 
@@ -57,6 +61,8 @@ class CondensedStructure {
   struct Route;
 
  private:
+  Route& route(double angular_frequency, double held);
+
   std::unique_ptr<Columns> columns_;
   std::unique_ptr<Route> route_, factorisation_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/numerics/eigen_symmetric.hpp>
 #include <rubato/steady/harmonic_balance/condensed_structure.hpp>
 
 // The routes of CondensedStructure; nobody else includes this.
@@ -39,6 +40,10 @@ struct CondensedStructure::Route {
   virtual Outcome condense(double w, double held, ComplexMatrix& receptance) = 0;
   virtual void expand(double w, double held, const ComplexVector& column_forces, ComplexVector& position) = 0;
   virtual double highest_frequency() const { return 0.0; }
+  /// Entries of its sparse factor a row; 0: it has none.
+  virtual double fill() const { return 0.0; }
+  /// Whether it knows the structure at a frequency.
+  virtual bool reaches(double /*w*/) const { return true; }
 };
 
 /// What counts as singular, as a fraction of the terms that cancel: round-off, and where a third of the digits are
@@ -47,8 +52,16 @@ inline constexpr double singular = 1e-13, nearly_singular = 1e-5;
 
 /// Real modes Phi^T M Phi = 1 of the structure without sliders; null where they do not diagonalise C.
 std::unique_ptr<CondensedStructure::Route> real_modes(const CondensedStructure::Columns& columns);
+/// Modes in a basis of vectors V [n x r], by the real modes V y of K and M in it and by V^T C V [r x r]; null where
+/// they do not diagonalise C, nor state-space modes do.
+std::unique_ptr<CondensedStructure::Route> modes_in_basis(const CondensedStructure::Columns& columns,
+                                                          const Matrix& basis, const numerics::SymmetricModes& modes,
+                                                          const Matrix& damping);
 /// Modes of the state space; null where they are no good basis.
 std::unique_ptr<CondensedStructure::Route> complex_modes(const CondensedStructure::Columns& columns);
+/// Modes of a large structure in a basis of its answers to the columns, up to 64 times a frequency [rad/s] or as far as
+/// few vectors give G within 1e-8.
+std::unique_ptr<CondensedStructure::Route> reduced_modes(const CondensedStructure::Columns& columns, double highest);
 /// Factorisation of Z, dense or sparse.
 std::unique_ptr<CondensedStructure::Route> dense_factorisation(const CondensedStructure::Columns& columns);
 std::unique_ptr<CondensedStructure::Route> sparse_factorisation(const CondensedStructure::Columns& columns);

@@ -41,7 +41,7 @@ HarmonicBalanceSolver::Implementation::Implementation(const system::LocallyNonli
     : system(s),
       request(std::move(r)),
       options(o),
-      structure(s, request.observed),
+      structure(s, request.observed, o.sweep),
       sliders(s.slider_count()),
       patterns(s.size(), 0) {
   for (const model::LawBetween& law : s.laws())

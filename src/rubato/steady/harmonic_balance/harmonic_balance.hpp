@@ -13,6 +13,7 @@ struct HarmonicBalanceOptions {
   double tolerance = 1e-3;            ///< wanted relative error of the amplitudes by truncation [-]
   double residual_tolerance = 2e-12;  ///< of the balance, relative to the relative displacements [-]
   int most_harmonics = 127;           ///< highest order that may be balanced
+  LinearSweep sweep = {};             ///< of many points: large structures go by modes in a basis of their answers
 };
 
 /// Steady responses as truncated Fourier series (harmonic balance).
