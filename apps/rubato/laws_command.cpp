@@ -82,6 +82,9 @@ int list_laws() {
       told.push_back(std::move(line));
     }
   fmt::print("  method_study: the model must be linear\n");
+  fmt::print(
+      "\nA bouc_wen with degradation and a slider whose friction_coefficient is a formula of the rate are laws for "
+      "transients by steps, static states and modes alone.\n");
   return exit_done;
 }
 

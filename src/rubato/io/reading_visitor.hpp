@@ -65,6 +65,8 @@ class ReadingVisitor {
     if (about.required || reader_.has(key)) to = reader_.quantity(key);
   }
   void formula(const char* key, Quantity& to, const Key&) { to = formula(key); }
+  /// A quantity that may use the rate where it is looked at as one that does.
+  void quantity_of_rate(const char* key, Quantity& to, bool, const Key& about) { quantity(key, to, about); }
   void quantities(const char* key, std::vector<Quantity>& to, const model::Size&, const Key& about) {
     if (about.required && !reader_.has(key)) reader_.refuse_to_lack(key);
     to = reader_.optional_quantities(key).value_or(std::vector<Quantity>{});

@@ -60,6 +60,7 @@ class SchemaVisitor {
     property(key, reference("quantity"), about);
   }
   void formula(const char* key, const Quantity&, const Key& about) { property(key, formula(), about); }
+  void quantity_of_rate(const char* key, const Quantity& of, bool, const Key& about) { quantity(key, of, about); }
   void quantities(const char* key, const std::vector<Quantity>&, const model::Size& size, const Key& about) {
     property(key, list(reference("quantity"), size), about);
   }

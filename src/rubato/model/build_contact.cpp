@@ -1,4 +1,5 @@
 #include <rubato/model/build_parts.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 #include <rubato/model/laws/elastic_contact.hpp>
 
 #include <fmt/format.h>
@@ -48,6 +49,12 @@ class Contact {
     values.normal_stiffness = positive(d_.normal_stiffness, "normal_stiffness");
     if (directions > 0) {
       values.tangential_stiffness = positive(*d_.tangential_stiffness, "tangential_stiffness");
+      if (depends_on_rate(*d_.friction_coefficient))
+        throw InvalidInput(
+            d_.friction_coefficient->where,
+            fmt::format("{}: friction_coefficient depends on the rate, which contacts do not take; take a "
+                        "[[slider]] along the plane whose normal_load is a [[stop]] across it",
+                        part_));
       values.friction_coefficient =
           at_least_zero(*d_.friction_coefficient, parameters_, part_ + ": friction_coefficient");
     }

@@ -1,6 +1,6 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
-#include <rubato/model/laws/jenkins.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 #include <rubato/model/laws/law_kind.hpp>
 
 #include <fmt/format.h>
@@ -75,12 +75,12 @@ class LawBuilder {
                            fmt::format("{}: normal_load names no law; give the name of a stop or of another law, or a "
                                        "number",
                                        part));
-      const double mu = at_least_zero(description.friction_coefficient, part + ": friction_coefficient");
       if (description.is_law()) {
-        pressed_.push_back(
-            {slider.name, "slider", slider.first, slider.second, make_jenkins(slider.stiffness, mu), {}, {}});
+        const auto law = build_slider_law(description, slider.stiffness, parameters_, part);
+        pressed_.push_back({slider.name, "slider", slider.first, slider.second, law, {}, {}});
         continue;
       }
+      const double mu = at_least_zero(description.friction_coefficient, part + ": friction_coefficient");
       slider.limit = mu * normal_load(description.normal_load, part + ": normal_load");
       model_.sliders.push_back(slider);
     }
@@ -92,8 +92,11 @@ class LawBuilder {
     for (const SliderDescription& description : description_.sliders) {
       if (!description.is_law()) continue;
       LawBetween& law = pressed_[next++];
-      law.normal =
-          build_normal_force(description, description_, model_, parameters_, fmt::format("slider \"{}\"", law.name));
+      const std::string part = fmt::format("slider \"{}\"", law.name);
+      if (has_constant_load(description))
+        law.normal.value = normal_load(description.normal_load, part + ": normal_load");
+      else
+        law.normal = build_normal_force(description, description_, model_, parameters_, part);
     }
     model_.laws.insert(model_.laws.end(), pressed_.begin(), pressed_.end());
   }

@@ -1,7 +1,7 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 #include <rubato/model/joints/joint_kinds.hpp>
-#include <rubato/model/laws/jenkins.hpp>
 #include <rubato/model/mechanism_assembly.hpp>
 
 #include <fmt/format.h>
@@ -221,7 +221,7 @@ PressingReaction pressing_reaction(const MechanismAssembly& assembly, const Slid
 NormalForce normal_of(const MechanismAssembly& assembly, const SliderDescription& slider, const std::string& part) {
   NormalForce normal;
   if (!pressing_joint(slider, part).empty()) return normal;
-  if (!slider.is_law()) {
+  if (has_constant_load(slider)) {
     normal.value = assembly.at_least_zero(slider.normal_load, part + ": normal_load");
     return normal;
   }
@@ -278,8 +278,14 @@ void take_sliders(MechanismAssembly& assembly) {
                       "or a number",
                       part));
     const double stiffness = assembly.positive(slider.stiffness, part + ": stiffness");
-    const double mu = assembly.at_least_zero(slider.friction_coefficient, part + ": friction_coefficient");
-    assembly.mechanism.add_law(slider.name, slider_table, place_of(assembly, place, part), make_jenkins(stiffness, mu),
+    if (depends_on_rate(slider.friction_coefficient) && !pressing_joint(slider, part).empty())
+      throw InvalidInput(
+          slider.friction_coefficient.where,
+          fmt::format("{}: friction_coefficient depends on the rate, and normal_load is a reaction: the two "
+                      "do not go together; give a number, a formula of t, or the force of a stop or law",
+                      part));
+    assembly.mechanism.add_law(slider.name, slider_table, place_of(assembly, place, part),
+                               build_slider_law(slider, stiffness, assembly.parameters, part),
                                normal_of(assembly, slider, part), pressing_reaction(assembly, slider, part));
   }
 }

@@ -1,25 +1,13 @@
 #include <rubato/model/build_parts.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 namespace rubato::model {
 namespace {
-
-bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-
-/// Whether a formula has the name t in it, which no parameter may have.
-bool names_time(const std::string& formula) {
-  for (std::size_t i = 0; i < formula.size(); ++i) {
-    const bool begins = i == 0 || !(is_of_name(formula[i - 1]) || formula[i - 1] == '.');
-    const bool ends = i + 1 == formula.size() || !is_of_name(formula[i + 1]);
-    if (formula[i] == 't' && begins && ends) return true;
-  }
-  return false;
-}
 
 template <class Parts>
 Index place_of(const Parts& parts, const std::string& name) {
@@ -29,9 +17,11 @@ Index place_of(const Parts& parts, const std::string& name) {
 
 }  // namespace
 
-bool SliderDescription::is_law() const {
-  return !normal_law.empty() || follows_own_reaction(*this) || names_time(normal_load.expression);
+bool has_constant_load(const SliderDescription& slider) {
+  return slider.normal_law.empty() && !follows_own_reaction(slider) && !names(slider.normal_load.expression, "t");
 }
+
+bool SliderDescription::is_law() const { return !has_constant_load(*this) || depends_on_rate(friction_coefficient); }
 
 NormalForce build_normal_formula(const SliderDescription& description, const numerics::Parameters& parameters,
                                  const std::string& part) {

@@ -1,5 +1,6 @@
 #include <rubato/model/doubtful_values.hpp>
 #include <rubato/model/finite_elements/finite_elements.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 #include <rubato/model/structure.hpp>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@ namespace {
 void take_friction(const Quantity& coefficient, const std::string& part, const numerics::Parameters& parameters,
                    std::vector<DoubtfulValue>& all) {
   constexpr double largest = 3.0;
+  if (depends_on_rate(coefficient)) return;
   const double value = evaluate(coefficient, parameters, part);
   if (!(value > largest)) return;
   all.push_back({coefficient.where,

@@ -2,6 +2,7 @@
 
 #include <rubato/model/description.hpp>
 #include <rubato/model/fields/key.hpp>
+#include <rubato/model/friction_coefficient.hpp>
 
 #include <cstring>
 #include <string>
@@ -45,8 +46,12 @@ void fields(auto& visit, Like<SliderDescription> auto& slider) {
                  {.required = true, .unit = "N/m", .says = "kT", .range = Range::positive});
   const bool is_law = slider.is_law();
   const Role role = is_law ? Role::structure : Role::limit;
-  visit.quantity("friction_coefficient", slider.friction_coefficient,
-                 {.required = true, .unit = "-", .says = "mu", .role = role});
+  visit.quantity_of_rate("friction_coefficient", slider.friction_coefficient,
+                         depends_on_rate(slider.friction_coefficient),
+                         {.required = true,
+                          .unit = "-",
+                          .says = "mu; may be a formula of the rate [m/s], as \"0.3 + 0.2*exp(-abs(rate)/0.05)\"",
+                          .role = role});
   visit.load_or_part(
       "normal_load", slider.normal_load, is_law,
       {.required = true,

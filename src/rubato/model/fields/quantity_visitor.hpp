@@ -17,6 +17,9 @@ class QuantityVisitor {
   void quantity(const char*, const std::optional<Quantity>& quantity, const Key& key) const {
     if (quantity) take_(*quantity, key.role, false);
   }
+  void quantity_of_rate(const char*, const Quantity& quantity, bool uses_rate, const Key& key) const {
+    take_(quantity, key.role, uses_rate);
+  }
   void load_or_part(const char*, const Quantity& quantity, bool uses_time, const Key& key, const auto&) const {
     if (quantity.expression == "reaction") return;  // a word: of the joint of a slider
     take_(quantity, key.role, uses_time);
