@@ -19,7 +19,8 @@ class Command(CommandCase):
         self.assertEqual(result.stdout, "out/report.html\n")
         names = {entry.name for entry in (self.folder / "out").iterdir()}
         self.assertEqual(names, {"results.nc", "report.html", "response.csv", "response.energy.csv",
-                                 "response.events.csv", "exact.csv", "exact.energy.csv", "exact.events.csv", *(f"{name}.csv" for name in (
+                                 "response.events.csv", "response.extremes.csv", "exact.csv", "exact.energy.csv",
+                                 "exact.events.csv", *(f"{name}.csv" for name in (
                                      "frf", "frf.linear", "frf.waveforms", "marched", "marched.linear", "damper",
                                      "damper.linear", "damper.peaks", "damper.optimum"))})
         header = self.rows("out/response.csv")[0]
@@ -126,7 +127,7 @@ class Command(CommandCase):
         again = self.run_command("run", "-o", "twice", study, "--only", "exact")
         self.assertEqual(again.returncode, 0)
         self.assertIn("tables of a former run, which these results do not have, were moved to twice/former: response.csv, "
-                      "response.energy.csv, response.events.csv\n", again.stderr)
+                      "response.energy.csv, response.events.csv, response.extremes.csv\n", again.stderr)
         self.assertEqual({entry.name for entry in (self.folder / "twice").iterdir()},
                          {"former", "notes.csv", "results.nc", "report.html", "exact.csv", "exact.energy.csv",
                           "exact.events.csv"})

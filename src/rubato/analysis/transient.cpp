@@ -93,6 +93,7 @@ RunReport run_transient(const std::string& name, const TransientPlan& plan, cons
   if (has_begun) {
     const integrate::Events events = march->events();
     write_events(name, events, context.sink);
+    recorder.write_extremes(context.sink);
     if (const std::string warning = warning_of(events); !warning.empty()) run.warnings.push_back(warning);
   }
   const integrate::MarchNotes notes = march->notes(report);

@@ -34,9 +34,9 @@ bool TransientObserver::accepted(const system::State& before, const system::Stat
   if (plan_.output == Kind::interval || plan_.output == Kind::times) record_between(before, after);
   recorder_.book(before, after);
   const bool goes_on = !listener_ || listener_->accepted(before, after);
-  if (plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0))
-    record(after, after);
-  recorder_.show_step(after);
+  const bool is_row = plan_.output == Kind::every_step || (plan_.output == Kind::every && steps_ % plan_.every == 0);
+  if (is_row) record(after, after);
+  if (!is_row || plan_.shows_every_step) recorder_.show_step(after);
   if (steps_ % steps_a_report_ == 0) context_.progress.advance(progress(after));
   return goes_on && !context_.stop.load(std::memory_order_relaxed);
 }

@@ -30,6 +30,7 @@ TransientRecorder::TransientRecorder(const std::string& name, const TransientPla
     group->add(layout);
     if (group->has_sums()) summing_.push_back(group.get());
   }
+  layout_ = layout;
   rows_ = sink.open(layout);
   if (plan.shows_every_step) {
     layout.table = "every_step";
@@ -52,12 +53,12 @@ void TransientRecorder::book(const system::State& before, const system::State& a
 }
 
 void TransientRecorder::show_step(const system::State& state) {
-  if (!step_rows_) return;
   shown_ = state;
   balance_.find_shown_acceleration(shown_);
   row_.assign(1, state.t);
   for (const auto& group : groups_) group->append_since(state, shown_, row_);
-  step_rows_->append(row_);
+  extremes_.take(row_);
+  if (step_rows_) step_rows_->append(row_);
 }
 
 void TransientRecorder::record(const system::State& before, const system::State& now, bool is_balanced) {
@@ -66,6 +67,7 @@ void TransientRecorder::record(const system::State& before, const system::State&
   row_.assign(1, now.t);
   for (const auto& group : groups_) group->append_since(before, shown_, row_);
   rows_->append(row_);
+  extremes_.take(row_);
   ++count_;
   if (!ledger_) return;
   row_.assign(1, now.t);

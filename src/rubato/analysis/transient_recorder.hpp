@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/extremes.hpp>
 #include <rubato/analysis/residue_watch.hpp>
 #include <rubato/analysis/transient_plan.hpp>
 #include <rubato/integrate/balance.hpp>
@@ -30,8 +31,11 @@ class TransientRecorder {
   /// @param before  the last state booked; may be `now`
   /// @param is_balanced  acceleration and multipliers of `now` are those to show: between the ends of a step
   void record(const system::State& before, const system::State& now, bool is_balanced = false);
-  /// Shows a state to the table `every_step`, where the plan has it.
+  /// Takes a state at the end of a step into the extremes, and shows it to the table `every_step` where the plan has
+  /// it.
   void show_step(const system::State& state);
+  /// Writes the extremes of all columns over what was shown and recorded.
+  void write_extremes(results::Sink& sink) const { analysis::write_extremes(layout_, extremes_, sink); }
   long rows() const { return count_; }
   /// Null: there is no ledger.
   const ResidueWatch* residue() const { return residue_ ? &*residue_ : nullptr; }
@@ -43,6 +47,8 @@ class TransientRecorder {
   integrate::EnergyLedger* ledger_;
   std::optional<ResidueWatch> residue_;
   system::State shown_;
+  results::TableLayout layout_;
+  Extremes extremes_;
   std::vector<double> row_;
   std::unique_ptr<results::RowWriter> rows_, energy_rows_, step_rows_;
   long count_ = 0, booked_ = 0;

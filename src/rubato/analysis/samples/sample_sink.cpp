@@ -1,13 +1,9 @@
 #include <rubato/analysis/samples/sample_sink.hpp>
 
-#include <cmath>
-#include <limits>
 #include <memory>
 
 namespace rubato::analysis {
 namespace {
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 class Writer final : public results::RowWriter {
  public:
@@ -37,23 +33,6 @@ class Writer final : public results::RowWriter {
 };
 
 }  // namespace
-
-void Extremes::take(std::span<const double> row) {
-  if (last.empty())
-    for (auto* values : {&least, &time_of_least, &largest, &time_of_largest}) values->assign(row.size(), nothing);
-  last.assign(row.begin(), row.end());
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (std::isnan(row[i])) continue;
-    if (!(least[i] <= row[i])) {
-      least[i] = row[i];
-      time_of_least[i] = row[0];
-    }
-    if (!(largest[i] >= row[i])) {
-      largest[i] = row[i];
-      time_of_largest[i] = row[0];
-    }
-  }
-}
 
 std::unique_ptr<results::RowWriter> SampleSink::open(const results::TableLayout& layout) {
   KeptTable& table = tables_[layout.table];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/analysis/extremes.hpp>
 #include <rubato/results/sink.hpp>
 
 #include <map>
@@ -10,14 +11,6 @@ namespace rubato::analysis {
 
 /// What a sample of a sweep keeps of a table that its analysis writes.
 enum class Kept { nothing, rows, last_row, extremes, extremes_and_rows };
-
-/// The least and the largest value of each column with the first times of both, and the last value; NaN where a column
-/// has no number. The first column is the time.
-struct Extremes {
-  std::vector<double> least, time_of_least, largest, time_of_largest, last;
-
-  void take(std::span<const double> row);
-};
 
 /// What was kept of a table.
 struct KeptTable {

@@ -89,7 +89,7 @@ function joint_tables(table, {rotations, sliding, efforts}) {
 function write_key_numbers(chapter, table, {motion, rotations, sliders, hinges, laws = [], joints = null}) {
   if (!table.key_numbers) return;
   const meaning = " max: largest absolute value; rms: root mean square over time; late: half of peak to peak over the " +
-    "last tenth of the duration. All rows count.";
+    "last tenth of the duration. Every step counts for max, every row for the others.";
   const numbers = joints ? joint_tables(table, joints) : [];
   if (motion.length) numbers.push(key_numbers(table, motion, `Motion of the coordinates.${meaning}`));
   if (rotations.length) numbers.push(key_numbers(table, rotations, `Rotations of the nodes${joints ? " and joints" : ""}.${meaning}`));

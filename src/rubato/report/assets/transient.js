@@ -183,8 +183,32 @@ function is_transient(analysis) {
     (variable_of(table, "position") !== null || analysis.attributes.type === "transient");
 }
 
+// The table of the extremes that columns took at the ends of steps.
+const is_of_extremes = (table) => table.attributes.type === "extremes" && ["column", "least", "largest"].every((name) => variable_of(table, name));
+
+/** Lets the key numbers of a table tell the largest values at all steps: rows may be fewer. */
+function take_extremes(analysis, table) {
+  const extremes = analysis.tables.find(is_of_extremes);
+  if (!extremes || !table.key_numbers || extremes.is_envelope) return;
+  const column = (name) => extremes.overview[variable_of(extremes, name).index][0];
+  const names = variable_of(extremes, "column").categories;
+  const places = new Map(column("column").map((category, row) => [names[category], row]));
+  const [least, least_time, largest, largest_time] = ["least", "time_of_least", "largest", "time_of_largest"].map(column);
+  table.variables.forEach((variable, index) => {
+    if (!table.key_numbers[index]) return;
+    variable.labels.forEach((label, row) => {
+      const at = places.get(`${label}.${variable.name}`);
+      if (at === undefined || least[at] === null) return;
+      const is_least = -least[at] > largest[at] || (-least[at] === largest[at] && least_time[at] < largest_time[at]);
+      table.key_numbers[index][row][key_places.largest] = is_least ? -least[at] : largest[at];
+      table.key_numbers[index][row][key_places.time] = is_least ? least_time[at] : largest_time[at];
+    });
+  });
+}
+
 function write_transient(chapter, analysis) {
   const [table] = analysis.tables;
+  take_extremes(analysis, table);
   const is_of_stops = (variable) => ["stop", "rotational_stop"].includes(variable.dimension);
   const is_of_laws = (variable) => ["law", "rotational_law"].includes(variable.dimension);
   const is_of_joints = (variable) => variable.dimension.endsWith("joint");
