@@ -54,6 +54,7 @@ int ContactEvents::branch_of_law(Index contact, const system::State& state) cons
     model::BlockPoint point = system_.block_point(b, state);
     const Index normal = law.size() - 1;
     point.u[normal] = law.clearance() + state.slider_force[contact + normal] / law.limit_stiffness(normal, true);
+    point.rate[normal] = 0.0;  // the force has the dashpot in it
     return static_cast<int>(law.contact(point, state.memory.data() + system_.memory_of_block(b)));
   }
   const Index law = contact - system_.first_law();

@@ -204,7 +204,8 @@ void LawProblem::evaluate_block(Index block, const Vector& force, system::State&
     double of_terms = std::abs(answer.force[r]) + std::abs(force[i]);
     for (Index k = 0; k < size; ++k)
       of_terms +=
-          std::abs(answer.by_u[r][k]) * (reach_[static_cast<std::size_t>(first + k - boxes_)] + size_[first + k]);
+          std::abs(answer.by_u[r][k]) * (reach_[static_cast<std::size_t>(first + k - boxes_)] + size_[first + k]) +
+          std::abs(answer.by_rate[r][k]) * (std::abs(v_free_[first + k]) + std::abs(v_[first + k]));
     take_error(i, std::abs(answer.force[r] - force[i]), epsilon * of_terms, largest);
   }
 }
@@ -243,9 +244,10 @@ void LawProblem::linearise_block(Index block) {
     trial_[i] = a.force[r];
     linearised_.set_slopes(i, 0.0, 0.0);
     for (Index k = 0; k < size; ++k) {
-      if (a.by_u[r][k] == 0.0) continue;
-      linearised_.add_slopes(i, first + k, a.by_u[r][k], 0.0);
-      trial_[i] += a.by_u[r][k] * (u_free_[first + k] - u_[first + k]);
+      if (a.by_u[r][k] == 0.0 && a.by_rate[r][k] == 0.0) continue;
+      linearised_.add_slopes(i, first + k, a.by_u[r][k], a.by_rate[r][k]);
+      trial_[i] +=
+          a.by_u[r][k] * (u_free_[first + k] - u_[first + k]) + a.by_rate[r][k] * (v_free_[first + k] - v_[first + k]);
     }
   }
 }
@@ -264,7 +266,8 @@ void LawProblem::take_known_forces(bool of_all_laws) {
     const model::BlockAnswer& a = block_answer_[static_cast<std::size_t>(b)];
     const Index first = system_.row_of_block(b), size = system_.blocks()[static_cast<std::size_t>(b)].law->size();
     for (Index r = 0; r < size; ++r)
-      if (std::all_of(a.by_u[r], a.by_u[r] + size, [](double slope) { return slope == 0.0; }))
+      if (std::all_of(a.by_u[r], a.by_u[r] + size, [](double slope) { return slope == 0.0; }) &&
+          std::all_of(a.by_rate[r], a.by_rate[r] + size, [](double slope) { return slope == 0.0; }))
         next_[first + r] = trial_[first + r];
   }
 }

@@ -58,7 +58,9 @@ StructureTimeline::StructureTimeline(const system::LocallyNonlinear& system, dou
       right_(system.size()),
       beyond_(system.start()),
       equilibrium_(system),
-      pressed_(system) {}
+      pressed_(system) {
+  pushing_.reserve(static_cast<std::size_t>(system.block_count()));
+}
 
 std::vector<double> StructureTimeline::breakpoints(double from, double to) const {
   std::vector<double> times = loads_.breakpoints(from, to);
@@ -91,6 +93,7 @@ bool StructureTimeline::has_ended_at(Index contact, const system::State& from, c
 // on either side; a stop gains or loses k du/dt + c d2u/dt2.
 Passage StructureTimeline::pass(const system::State& before, system::State& state, double shift) {
   bool has_kink = false, has_jump = false;
+  pushing_.clear();
   beyond_.slider_force = state.slider_force;
   for (Index i = 0; i < system_.contact_count(); ++i) {
     if (i >= system_.first_law() && !is_gap(i)) continue;
@@ -101,6 +104,11 @@ Passage StructureTimeline::pass(const system::State& before, system::State& stat
     const Path path = path_of(i, before, state);
     if (watch == Watch::limit) {
       beyond_.slider_force[i] -= shift * system_.sliders()[static_cast<std::size_t>(i)].stiffness * path.v1;
+      continue;
+    }
+    if (i >= system_.first_block() && watch == Watch::closing && gap_of(i).damping > 0.0) {
+      has_jump = true;
+      pushing_.emplace_back(i, gap_of(i).damping * path.v1);
       continue;
     }
     if (i >= system_.first_block()) {
@@ -118,6 +126,8 @@ Passage StructureTimeline::pass(const system::State& before, system::State& stat
   }
   if (has_jump) {
     restart(state);
+    for (const auto& [contact, force] : pushing_) state.slider_force[contact] = force;
+    if (!pushing_.empty()) equilibrium_(state, state.auxiliary_acceleration);
     return Passage::restarts;
   }
   if (!has_kink || shift == 0.0) return Passage::continues;
@@ -370,7 +380,7 @@ StructureTimeline::Gap StructureTimeline::gap_of(Index contact) const {
     return {stop.gap, stop.stiffness, stop.damping};
   }
   const model::BlockLaw& law = *system_.blocks()[static_cast<std::size_t>(system_.block_at(contact))].law;
-  return {law.clearance(), law.limit_stiffness(law.size() - 1, true), 0.0};
+  return {law.clearance(), law.limit_stiffness(law.size() - 1, true), law.closed_damping()};
 }
 
 }  // namespace rubato::integrate

@@ -68,6 +68,7 @@ class StructureTimeline final : public Timeline {
   system::Loads loads_;
   Vector left_, right_;
   system::State beyond_;
+  std::vector<std::pair<Index, double>> pushing_;  ///< damped contacts that close at a transition, with their force
   system::EquilibriumAcceleration equilibrium_;
   PressedMotion pressed_;
 };

@@ -59,6 +59,8 @@ class Contact {
           at_least_zero(*d_.friction_coefficient, parameters_, part_ + ": friction_coefficient");
     }
     if (d_.gap) values.gap = number(*d_.gap, "gap");
+    if (d_.normal_damping)
+      values.normal_damping = at_least_zero(*d_.normal_damping, parameters_, part_ + ": normal_damping");
     if (d_.sliding_velocity) {
       values.sliding_velocity = number(*d_.sliding_velocity, "sliding_velocity");
       if (!std::isfinite(values.sliding_velocity))

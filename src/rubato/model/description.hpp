@@ -115,6 +115,7 @@ struct ContactDescription {
   std::optional<Quantity> friction_coefficient;  ///< mu [-]; none: nothing rubs
   std::optional<Quantity> gap;                   ///< [m]
   std::optional<Quantity> normal_load;           ///< N at d = 0 [N], instead of the gap
+  std::optional<Quantity> normal_damping;        ///< cn while closed [N s/m]
   std::optional<Quantity> sliding_velocity;      ///< V of a belt or disc [m/s]: V t is added to the first u
   Location where;
 };

@@ -247,9 +247,21 @@ SparseMatrix LocallyNonlinear::free_stiffness() const {
   return with_contacts(parts_.stiffness, coefficients);
 }
 
-SparseMatrix LocallyNonlinear::free_damping() const {
-  return law_count() == 0 ? parts_.damping : with_contacts(parts_.damping, law_slopes(&model::LawAnswer::by_rate));
+SparseMatrix LocallyNonlinear::limit_damping(bool is_stuck) const {
+  if (!has_laws()) return parts_.damping;
+  std::vector<double> coefficients = law_slopes(&model::LawAnswer::by_rate);
+  for (Index b = 0; b < block_count(); ++b) {
+    const model::BlockLaw& law = *parts_.blocks[static_cast<std::size_t>(b)].law;
+    const Index normal = law.size() - 1;
+    if (law.limit_stiffness(normal, is_stuck) > 0.0)
+      coefficients[static_cast<std::size_t>(row_of_block(b) + normal)] = law.closed_damping();
+  }
+  return with_contacts(parts_.damping, coefficients);
 }
+
+SparseMatrix LocallyNonlinear::free_damping() const { return limit_damping(false); }
+
+SparseMatrix LocallyNonlinear::stuck_damping() const { return limit_damping(true); }
 
 SparseMatrix LocallyNonlinear::stuck_stiffness() const {
   std::vector<double> coefficients;
@@ -282,6 +294,10 @@ SparseMatrix LocallyNonlinear::closed_damping() const {
   std::vector<double> coefficients = law_slopes(&model::LawAnswer::by_rate);
   std::size_t i = parts_.sliders.size();
   for (const auto& stop : parts_.stops) coefficients[i++] = stop.damping;
+  for (Index b = 0; b < block_count(); ++b) {
+    const model::BlockLaw& law = *parts_.blocks[static_cast<std::size_t>(b)].law;
+    coefficients[static_cast<std::size_t>(row_of_block(b) + law.size() - 1)] = law.closed_damping();
+  }
   return with_contacts(parts_.damping, coefficients);
 }
 

@@ -159,6 +159,8 @@ class LocallyNonlinear final : public System {
   /// K and C with the slopes of the laws where nothing has moved yet and nothing presses, without sliders and stops.
   SparseMatrix free_stiffness() const;
   SparseMatrix free_damping() const;
+  /// The same beside stuck_stiffness(): with the dashpots of all contacts.
+  SparseMatrix stuck_damping() const;
   /// C and that K with all stops closed besides: what bounds the step of explicit methods.
   SparseMatrix closed_damping() const;
   SparseMatrix closed_stiffness() const;
@@ -171,6 +173,8 @@ class LocallyNonlinear final : public System {
   std::vector<double> law_slopes(double model::LawAnswer::*slope) const;
   /// Sets the coefficients of the rows of the blocks to their stiffness in a limit of small motions.
   void set_block_limits(bool is_stuck, std::vector<double>& coefficients) const;
+  /// The damping in such a limit.
+  SparseMatrix limit_damping(bool is_stuck) const;
   SparseMatrix with_contacts(const SparseMatrix& matrix, const std::vector<double>& coefficients) const;
 
   Parts parts_;

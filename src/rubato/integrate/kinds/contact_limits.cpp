@@ -130,7 +130,7 @@ void add_law(const ContactLimit& limit, Index j, const system::LocallyNonlinear&
 }
 
 /// By the slopes of a contact at its limit of friction, pressed, that slips on.
-void add_sliding(const model::BlockLaw& law, Index first, int sign, Slopes& stiffness) {
+void add_sliding(const model::BlockLaw& law, Index first, int sign, Slopes& stiffness, Slopes& damping) {
   const Index normal = law.size() - 1;
   model::BlockPoint point;
   point.u[normal] = law.clearance() + std::max(1.0, std::abs(law.clearance()));
@@ -138,12 +138,15 @@ void add_sliding(const model::BlockLaw& law, Index first, int sign, Slopes& stif
   const double memory = sign * any_limit;
   const model::BlockAnswer answer = law.at(point, &memory);
   for (Index i = 0; i < law.size(); ++i)
-    for (Index k = 0; k < law.size(); ++k) stiffness.add(first + i, first + k, answer.by_u[i][k]);
+    for (Index k = 0; k < law.size(); ++k) {
+      stiffness.add(first + i, first + k, answer.by_u[i][k]);
+      damping.add(first + i, first + k, answer.by_rate[i][k]);
+    }
 }
 
 /// @return whether it adds what is not symmetric
 bool add_block(const ContactLimit& limit, Index b, const system::LocallyNonlinear& system, const system::State& at,
-               Slopes& stiffness) {
+               Slopes& stiffness, Slopes& damping) {
   const model::BlockLaw& law = *system.blocks()[static_cast<std::size_t>(b)].law;
   const Index first = system.row_of_block(b), normal = law.size() - 1;
   if (limit.kind == Kind::open) return false;
@@ -154,10 +157,11 @@ bool add_block(const ContactLimit& limit, Index b, const system::LocallyNonlinea
   if (limit.needs_static_state())
     if (const double velocity = law.sliding_velocity(); velocity != 0.0) sign = velocity > 0.0 ? 1 : -1;
   if (sign != 0) {
-    add_sliding(law, first, sign, stiffness);
+    add_sliding(law, first, sign, stiffness, damping);
     return true;
   }
   stiffness.add(first + normal, law.limit_stiffness(normal, true));
+  damping.add(first + normal, law.closed_damping());
   for (Index i = 0; i < normal && keeps_friction(limit.kind); ++i)
     stiffness.add(first + i, law.limit_stiffness(i, true));
   return false;
@@ -202,7 +206,7 @@ LimitMatrices matrices_in(const ContactLimit& limit, const system::LocallyNonlin
   for (Index j = 0; j < system.law_count(); ++j) add_law(limit, j, system, at, stiffness, damping);
   LimitMatrices matrices;
   for (Index b = 0; b < system.block_count(); ++b)
-    if (add_block(limit, b, system, at, stiffness)) matrices.is_symmetric = false;
+    if (add_block(limit, b, system, at, stiffness, damping)) matrices.is_symmetric = false;
   matrices.stiffness = stiffness.with(system.stiffness());
   matrices.damping = damping.with(system.damping());
   return matrices;

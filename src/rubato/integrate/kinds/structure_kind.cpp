@@ -154,9 +154,10 @@ FreeMotions StructureKind::free_motions(const system::State& /*state*/, Index li
   FreeMotions motions;
   motions.freedoms = system_.size();
   // Aside: the dense solvers in it cannot be asked to stop.
-  motions.found = stoppable_aside([stiffness = limit == 0 ? system_.free_stiffness() : system_.stuck_stiffness(),
-                                   damping = system_.free_damping(), mass = system_.mass(),
-                                   count] { return numerics::lowest_damped_modes(stiffness, damping, mass, count); });
+  motions.found =
+      stoppable_aside([stiffness = limit == 0 ? system_.free_stiffness() : system_.stuck_stiffness(),
+                       damping = limit == 0 ? system_.free_damping() : system_.stuck_damping(), mass = system_.mass(),
+                       count] { return numerics::lowest_damped_modes(stiffness, damping, mass, count); });
   return motions;
 }
 

@@ -159,6 +159,11 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
   visit.quantity(
       "normal_load", contact.normal_load,
       {.unit = "N", .says = "instead of the gap: N = max(0, normal_load + kn d)", .range = Range::not_negative});
+  visit.quantity("normal_damping", contact.normal_damping,
+                 {.unit = "N s/m",
+                  .says = "cn while closed: N = max(0, kn (d - gap) + cn dd/dt), which never pulls",
+                  .unless = "0",
+                  .range = Range::not_negative});
   visit.quantity("sliding_velocity", contact.sliding_velocity,
                  {.unit = "m/s", .says = "V of a belt or disc: V t is added to u, the first of two", .unless = "0"});
   visit.exactly_one_of({"between", "normal"});

@@ -17,8 +17,9 @@ struct BlockPoint {
 /// A force for each number, with its slopes by all of them; they need not be symmetric. Forces resist, as those of
 /// model::Law do.
 struct BlockAnswer {
-  double force[largest_block] = {};                ///< [N]
-  double by_u[largest_block][largest_block] = {};  ///< force i by u j [N/m]
+  double force[largest_block] = {};                   ///< [N]
+  double by_u[largest_block][largest_block] = {};     ///< force i by u j [N/m]
+  double by_rate[largest_block][largest_block] = {};  ///< force i by du/dt j [N s/m]
 };
 
 /// A law of d numbers that are told apart by their places, with a memory of its own: model::Law of a vector. Immutable.
@@ -32,7 +33,7 @@ class BlockLaw {
   virtual Index memory_size() const = 0;
 
   /// The forces at the end of a step that goes straight from one point to another, with their slopes by the
-  /// displacements at `to` (the consistent tangent).
+  /// displacements and rates at `to` (the consistent tangent).
   /// @param next  the memory at `to`; must not be `memory`
   virtual BlockAnswer advance(const BlockPoint& from, const double* memory, const BlockPoint& to,
                               double* next) const = 0;
@@ -49,6 +50,8 @@ class BlockLaw {
   /// Force i by u i in small motions from rest: with everything that rubs stuck and all that may touch closed, or
   /// without friction and closed where it is at rest [N/m].
   virtual double limit_stiffness(Index i, bool is_stuck) const = 0;
+  /// Of the last number the dashpot across the ends while they are closed [N s/m].
+  virtual double closed_damping() const { return 0.0; }
   /// The last number at which the ends meet [m].
   virtual double clearance() const = 0;
   /// V of a second end that moves on steadily, as a belt or a disc does: V t is added to the first number, V to its

@@ -13,6 +13,7 @@ struct ContactValues {
   double normal_stiffness = 0.0;      ///< kn > 0 [N/m]
   double friction_coefficient = 0.0;  ///< mu >= 0 [-]
   double gap = 0.0;                   ///< clearance at u = 0; negative: pressed by -kn gap there [m]
+  double normal_damping = 0.0;        ///< cn >= 0 while closed [N s/m]
   double sliding_velocity = 0.0;      ///< V: V t is added to the first number along the plane [m/s]
 };
 
@@ -33,7 +34,10 @@ struct ContactValues {
 /// (L is the logarithmic mean, N where it is constant), which is of second order in curved motions; cutting the trial
 /// force off at mu N of the end, which is exact along a line, is of first order there. Where the ends meet within the
 /// step the springs are stretched from there on only.
-/// Its memory is T [N].
+/// With a dashpot N = max(0, kn (n - gap) + cn dn/dt) while n > gap: it pushes as soon as the ends meet and never
+/// pulls; where it would, the ends are open. In the step in which they meet it pushes with the share of the travel that
+/// is beyond the gap, without which such a step may have no solution. Energy that is in kn where N comes to zero the
+/// dashpot takes. Its memory is T [N].
 std::shared_ptr<const BlockLaw> make_elastic_contact(const ContactValues& values);
 
 }  // namespace rubato::model
