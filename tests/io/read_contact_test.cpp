@@ -48,7 +48,8 @@ TEST(ReadContact, RefusesKeysThatDoNotGoTogether) {
   EXPECT_THAT(
       verdict_on("tangential = [{ disk = 1 }, { disk = 1 }, { disk = 1 }]\nnormal = { blade = 1 }\n" + rubs + presses),
       HasSubstr("got a list of 3"));
-  EXPECT_THAT(verdict_on(shares + rubs + presses + "normal_damping = 1.0\n"), HasSubstr("no key \"normal_damping\""));
+  EXPECT_THAT(verdict_on(shares + rubs + presses + "tangential_damping = 1.0\n"),
+              HasSubstr("no key \"tangential_damping\""));
 }
 
 TEST(ReadContact, IsRefusedByAnalysesThatDoNotKnowIt) {
