@@ -209,6 +209,7 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
                        1.0,
                        std::move(sweep),
                        dependence_of(input, varied.places)};
+  plan.is_in_hertz = description.frequencies_in_hertz;
   if (plan.dependence.is_in_hertz(excitation)) plan.excitation_factor = 0.5 / std::numbers::pi;
   const auto columns = damper_curve_columns();
   const auto reaches_model = model_dependence(input, plan.dependence, varied.places);

@@ -42,6 +42,7 @@ struct DamperCurvePlan {
   bool limits_follow_parameter = false;  ///< the linear limits
   std::vector<bool> is_structural = {};  ///< of each swept parameter: whether it changes the structure
 
+  bool is_in_hertz = false;                ///< the study gives the frequencies so, and the report shows them so
   std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
 
   /// What is solved, at the values of the study.

@@ -136,6 +136,7 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
             {"excitation", (plan.excitation_factor == 1.0 ? "" : "2 pi ") + input.parameters[plan.excitation].first},
             {"swept_parameters", fmt::format("{}", fmt::join(plan.sweep.names(), ", "))},
             {"lines", std::to_string(plan.sweep.lines())}}};
+  if (plan.is_in_hertz) main_.attributes.emplace_back("frequency_unit", "Hz");
 
   std::vector<Block> linear = keys;
   for (const auto& [limit, description] :

@@ -228,6 +228,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   varied.push_back(excitation);
   FrequencyResponsePlan plan{frequencies_of(description, input.parameters, title, where), excitation, 1.0,
                              std::move(sweep), dependence_of(input, std::move(varied))};
+  plan.is_in_hertz = description.frequencies_in_hertz;
   if (plan.dependence.is_in_hertz(excitation)) plan.excitation_factor = 0.5 / std::numbers::pi;
   std::vector<std::size_t> all = plan.sweep.places();
   all.push_back(excitation);

@@ -45,6 +45,7 @@ struct FrequencyResponsePlan {
 
   std::shared_ptr<const SteadyModel> about = nullptr;  ///< of a mechanism: at the values of the study, its first point
 
+  bool is_in_hertz = false;                ///< the study gives the frequencies so, and the report shows them so
   std::vector<std::string> warnings = {};  ///< of what is asked for, before anything is solved
 
   /// What is solved, at the values of the study.

@@ -48,6 +48,7 @@ Attributes attributes_of(const FrequencyResponsePlan& plan, const StudyInput& in
       {"lines", std::to_string(plan.sweep.lines())}};
   if (plan.route.kind == steady::SteadyRoute::Kind::time_marching)
     attributes.emplace_back("method", plan.route.method.name);
+  if (plan.is_in_hertz) attributes.emplace_back("frequency_unit", "Hz");
   if (plan.route.tolerance > 0.0) attributes.emplace_back("tolerance", fmt::format("{}", plan.route.tolerance));
   return attributes;
 }

@@ -4,15 +4,10 @@
 function quantity_label(table, index) {
   const variable = table.variables[index];
   const {excitation} = table.attributes;
+  if (variable.name === "angular_frequency" && table.hertz !== undefined) return `Frequency${table.hertz === "f" ? "" : `, ${table.hertz}`} [Hz]`;
   if (variable.name === "angular_frequency" && excitation) return `Angular frequency, ${excitation} [rad/s]`;
   const tells_curves = table.curves && [table.curves.abscissa, ...table.curves.keys].includes(index);
   return tells_curves && (!variable.unit || variable.unit === "1") ? `${variable.name} [SI]` : axis_label(variable);
-}
-
-/** "7.5 rad/s", and "7.5 rad/s (1.1937 Hz)" where the study excites by a parameter in hertz. */
-function frequency_text(table, angular_frequency) {
-  const text = `${Number(angular_frequency.toPrecision(6))} rad/s`;
-  return (table.attributes.excitation ?? "").startsWith("2 pi ") ? `${text} (${Number((angular_frequency / (2 * Math.PI)).toPrecision(5))} Hz)` : text;
 }
 
 /** 0.30000000000000004 as "0.3"; a word where the variable has words. */
@@ -40,7 +35,7 @@ function varying_keys(table, curves = curves_of(table)) {
 function curve_name(table, curve, places) {
   return places.map((place) => {
     const variable = table.variables[table.curves.keys[place]];
-    return `${variable.name === "angular_frequency" ? "Ω" : variable.name.replaceAll("_", " ")} = ${value_text(variable, curve.keys[place])}` +
+    return `${variable.name === "angular_frequency" ? table.hertz ?? "Ω" : variable.name.replaceAll("_", " ")} = ${value_text(variable, curve.keys[place])}` +
       (variable.unit && variable.unit !== "1" ? ` ${pretty_unit(variable.unit)}` : "");
   }).join(", ");
 }

@@ -16,13 +16,15 @@ function limit_traces(linear, name, label, color = null) {
   return ["free", "stuck"].flatMap((limit) => {
     const variable = variable_of(linear, `${limit}_${name}`);
     if (!variable || label >= variable.labels.length) return [];
-    return curves.map((curve) => {
+    return curves.map((curve, index) => {
       const rest = curve_name(linear, curve, places);
-      const shown = `Linear, ${limit}${rest ? ` (${rest})` : ""}${color === null ? "" : `: ${variable.labels[label]}`}`;
+      const name_of_limit = `Linear, ${limit}${color === null ? "" : `: ${variable.labels[label]}`}`;
+      const shown = rest ? `${name_of_limit} (${rest})` : name_of_limit;
       const x = linear.overview[linear.curves.abscissa][0].slice(curve.from, curve.to);
       const y = linear.overview[variable.index][label].slice(curve.from, curve.to);
       return {
-        type: "scatter", mode: "lines", ...(is_angle(name) ? broken_at_turns(x, y) : {x, y}), name: plot_text(shown), showlegend: true,
+        type: "scatter", mode: "lines", ...(is_angle(name) ? broken_at_turns(x, y) : {x, y}), name: plot_text(name_of_limit), legendgroup: plot_text(name_of_limit),
+        showlegend: index === 0,
         line: {color: color ?? "#59636d", width: 1.3, dash: limit === "free" ? "dash" : "dot"},
         hovertemplate: `${plot_text(shown)}<br>%{x:.6~g}, %{y:.5~g}<extra></extra>`,
       };
@@ -65,7 +67,7 @@ function family_figure(table, variables, {caption, linear = null, with_scale = f
         const x = x_of(curve), y = table.overview[variable.index][which].slice(curve.from, curve.to);
         return is_angle(variable.name) ? broken_at_turns(x, y) : {x, y};
       };
-      const hover = `${phrase(table.variables[abscissa].name)} %{x:.6~g} ${pretty_unit(table.variables[abscissa].unit)}<br>` +
+      const hover = `${variable_phrase(table.variables[abscissa])} %{x:.6~g} ${pretty_unit(table.variables[abscissa].unit)}<br>` +
         `${quantity_phrase(variable.name)} %{y:.5~g} ${pretty_unit(variable.unit)}`;
       const shown = is_single ? table.overview[variable.index].map((_, which) => which) : [label];
       const traces = is_single

@@ -69,7 +69,7 @@ function map_figure(table, variable) {
           type: "heatmap", x, y, z, colorscale: map_colors, hoverongaps: false, customdata: rows,
           colorbar: {title: {text: plot_text(title), side: "right"}, thickness: 14, outlinewidth: 0,
                      ...(by_ratio ? {tickvals: ticks, ticktext: ticks.map((tick) => String(Number((10 ** tick).toPrecision(2))))} : {})},
-          hovertemplate: `${phrase(table.variables[table.curves.abscissa].name)} %{x:.6~g}<br>` +
+          hovertemplate: `${variable_phrase(table.variables[table.curves.abscissa])} %{x:.6~g}<br>` +
             `${plot_text(table.variables[table.curves.keys[along]].name)} ${is_even ? "%{y:.5~g}" : "%{y}"}<br>Amplitude %{customdata:.5~g}<extra></extra>`,
         }, {
           type: "scatter", mode: "lines+markers", x: ridge.map((i) => (i < 0 ? null : x[i])), y, name: "Largest", hoverinfo: "skip", showlegend: false,

@@ -27,9 +27,12 @@ function phrase(name) {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
+/** What a variable is called where it is shown. */
+const variable_phrase = (variable) => phrase(variable.shown_name ?? variable.name);
+
 /** The label of an axis or a column: "Position [m]". */
 function axis_label(variable) {
-  return `${phrase(variable.name)} [${pretty_unit(variable.unit)}]`;
+  return `${variable_phrase(variable)} [${pretty_unit(variable.unit)}]`;
 }
 
 /** A number with so many significant digits, as a node; a dash where there is none. */

@@ -93,7 +93,7 @@ function sensitivity_figure(table, variable, numeric, some) {
         traces: [{type: "scatter", mode: "markers", x: table.peaks.keys[place], y: table.peaks.value[label], showlegend: false,
                   marker: {size: 5, opacity: 0.75, color: table.peaks.abscissa[label], colorscale: color_scale, showscale: true,
                            colorbar: {title: {text: quantity_label(table, table.curves.abscissa), side: "right"}, thickness: 12, outlinewidth: 0}},
-                  hovertemplate: "%{x:.5~g}<br>%{y:.5~g}<br>at %{marker.color:.5~g} rad/s<extra></extra>"}],
+                  hovertemplate: `%{x:.5~g}<br>%{y:.5~g}<br>at %{marker.color:.5~g} ${pretty_unit(table.variables[table.curves.abscissa].unit)}<extra></extra>`}],
         layout: {xaxis: axis(quantity_label(table, table.curves.keys[place])),
                  yaxis: axis(`${variable.labels[label]}: Largest amplitude [${pretty_unit(variable.unit)}]`)},
       };

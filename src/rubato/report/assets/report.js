@@ -90,6 +90,7 @@ function write_analysis(parent, analysis, index) {
   const chapter = add_chapter(parent, analysis.name, element("p", {class: "facts", id: `analysis-${index}`}, facts.join(" · "),
                                                              facts.length ? " " : "", badge(status)),
                               what_became(analysis), statistics_of(analysis));
+  show_in_hertz(analysis);
   write_scene(chapter, analysis);
   if (is_swept(analysis)) {
     write_swept(chapter, analysis);
