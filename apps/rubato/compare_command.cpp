@@ -30,7 +30,7 @@ std::string line_of(const TableComparison& table, const ColumnDifference& column
 
 /// Returns whether it is within the tolerance, or does not count.
 bool print_table(const TableComparison& table, const CompareOptions& options) {
-  const double tolerance = table.counts ? options.tolerance : std::numeric_limits<double>::infinity();
+  const double tolerance = table.not_counted.empty() ? options.tolerance : std::numeric_limits<double>::infinity();
   auto columns = table.columns;
   std::stable_sort(columns.begin(), columns.end(),
                    [](const auto& a, const auto& b) { return a.relative > b.relative; });
@@ -39,10 +39,11 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
     fmt::print("{}: equal\n", table.table);
     return true;
   }
-  fmt::print("{}{}\n", table.table, table.counts ? "" : " (how the runs chose their steps; it does not count)");
-  for (const std::string& gap : table.gaps) fmt::print("{} {}\n", table.counts ? "*" : " ", gap);
+  fmt::print("{}{}\n", table.table,
+             table.not_counted.empty() ? "" : fmt::format(" ({}; it does not count)", table.not_counted));
+  for (const std::string& gap : table.gaps) fmt::print("{} {}\n", table.not_counted.empty() ? "*" : " ", gap);
   for (const std::string& note : table.notes) fmt::print("  {}\n", note);
-  if (columns.empty()) return table.gaps.empty() || !table.counts;
+  if (columns.empty()) return table.gaps.empty() || !table.not_counted.empty();
   std::size_t width = 6, told = 0;
   for (const ColumnDifference& column : columns) width = std::max(width, column.column.size());
   fmt::print("  {:<{}}  {:>9}  {:>9}  at\n", "column", width, "relative", "largest");
@@ -56,7 +57,7 @@ bool print_table(const TableComparison& table, const CompareOptions& options) {
     fmt::print("  {} more column{}, {}\n", columns.size() - told, columns.size() - told == 1 ? "" : "s",
                next.relative == 0.0 ? "equal" : fmt::format("at most {:.2e}; --all tells them", next.relative));
   }
-  return !table.counts || (table.gaps.empty() && is_within(columns.front(), tolerance));
+  return !table.not_counted.empty() || (table.gaps.empty() && is_within(columns.front(), tolerance));
 }
 
 }  // namespace
@@ -69,7 +70,7 @@ int compare(const CompareOptions& options) {
   const ColumnDifference* worst = nullptr;
   for (const TableComparison& table : tables) {
     if (!print_table(table, options)) ++beyond;
-    if (!table.counts) {
+    if (!table.not_counted.empty()) {
       steps_differ = steps_differ || !table.gaps.empty() ||
                      std::any_of(table.columns.begin(), table.columns.end(),
                                  [](const ColumnDifference& column) { return column.relative > 0.0; });

@@ -226,9 +226,10 @@ class Schema(unittest.TestCase):
                 asked |= set(re.findall(r"\w+", words)) if operation != "title" else set()
             asked |= {word for pair in re.findall(either, text) for word in pair}
         # Laws name their table, and their keys with a type.
-        law = r'LawKind \w+\(\) \{.*?return \{\s*"(\w+)"|\{"(\w+)", (?:LawKey::)?Type::'
+        law = r'LawKind \w+\(\) \{.*?return \{\s*"(\w+)"|\{"([\w.]+)", (?:LawKey::)?Type::'
         for source in (root / "src" / "rubato" / "model" / "laws").glob("*.cpp"):
-            asked |= {word for pair in re.findall(law, source.read_text(), re.DOTALL) for word in pair if word}
+            for pair in re.findall(law, source.read_text(), re.DOTALL):
+                asked |= {word for key in pair if key for word in key.split(".")}
         known = keys_of(schema)
         # A method's own parameters are read by whatever name they have and judged by the catalogue.
         methods = set(subprocess.run([rubato, "methods", "newmark"], check=True, capture_output=True,

@@ -34,8 +34,13 @@ double largest_of(const ResultColumn& column) {
   return largest;
 }
 
-/// How a run chose its steps is no result: two runs of other tolerances differ in it however well they agree.
-bool is_log_of_steps(const std::filesystem::path& table) { return table.stem().extension() == ".steps"; }
+/// How a run chose its steps is no result: two runs of other tolerances differ in it however well they agree. So do the
+/// times of extremes, where two are nearly equal; what they are of is compared row by row.
+std::string why_not_counted(const std::filesystem::path& table) {
+  const auto kind = table.stem().extension();
+  if (kind == ".steps") return "how the runs chose their steps";
+  return kind == ".extremes" ? "of equal extremes either time may be the first" : "";
+}
 
 bool is_history(const ResultTable& table) {
   if (table.rows < 2 || table.columns.empty() || table.columns.front().name != "time [s]") return false;
@@ -318,13 +323,13 @@ std::vector<TableComparison> compare_results(const std::filesystem::path& a, con
     const bool in_first = std::binary_search(first.begin(), first.end(), table);
     if (in_first && std::binary_search(second.begin(), second.end(), table)) {
       result.push_back(compare_tables(table.string(), read_result_table(a / table), read_result_table(b / table)));
-      result.back().counts = !is_log_of_steps(table);
+      result.back().not_counted = why_not_counted(table);
       continue;
     }
     TableComparison missing;
     missing.table = table.string();
     missing.gaps.push_back(fmt::format("only the {} has this table", in_first ? "first" : "second"));
-    missing.counts = !is_log_of_steps(table);
+    missing.not_counted = why_not_counted(table);
     result.push_back(std::move(missing));
   }
   return result;

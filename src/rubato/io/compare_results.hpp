@@ -25,7 +25,7 @@ struct TableComparison {
   std::vector<std::string> gaps;   ///< what one of them lacks: the table, columns, rows
   std::vector<std::string> notes;  ///< how rows were matched, where that is not one by one
   bool is_history = false;         ///< `at` is a time
-  bool counts = true;              ///< false of `ANALYSIS.steps.csv`, which tells how a run went and not what came out
+  std::string not_counted;         ///< why differences are no failure, of `ANALYSIS.steps.csv`; empty: they count
 };
 
 /// Compares what both tables have.
