@@ -361,5 +361,36 @@ TEST(DamperCurveByBalance, RefusesPeriodicOrbitsOfLargeModelsAndToleranceOfThem)
   EXPECT_THAT(fault(coupled_masses() + curve_of(lines + "about = \"static\"\n")), HasSubstr("is of mechanisms"));
 }
 
+// A hardening spring bends its resonance over, so that two responses are stable at many frequencies, and points fail
+// with the orders that are held. What converges is one response: that of the peak, with its amplitude.
+TEST(DamperCurveByBalance, TellsOneResponseWhereResonancesBendOver) {
+  for (const std::string load : {"0.002", "0.3", "3"}) {
+    const auto curve = run(fmt::format(R"toml(
+coordinate = [{{ name = "x", mass = 1.0 }}, {{ name = "y", mass = 1.0 }}]
+spring = [{{ between = ["x", "ground"], stiffness = 1.0 }}, {{ between = ["x", "y"], stiffness = 0.4 }},
+          {{ between = ["y", "ground"], stiffness = 1.0 }}]
+damper = [{{ between = ["x", "ground"], damping = 0.005 }}, {{ between = ["y", "ground"], damping = 0.005 }}]
+nonlinear_spring = [{{ between = ["x", "ground"], force = "N0*u^3" }}]
+force = [{{ on = "x", amplitude = {}, angular_frequency = "Om" }}]
+[parameters]
+Om = 1.0
+N0 = 1.0
+)toml",
+                                       load) +
+                           curve_of("range = { from = 0.01, to = 3, points = 9, spacing = \"log\" }\noptimum = false\n"
+                                    "tolerance = 0.02\nangular_frequency = { from = 0.5, to = 4 }\n"));
+    int converged = 0;
+    for (std::size_t row = 0; row < curve->rows().size(); ++row) {
+      if (curve->status(row) != PointStatus::converged) continue;
+      ++converged;
+      const double largest = std::max(curve->at(row, "amplitude", "x"), curve->at(row, "amplitude", "y"));
+      EXPECT_NEAR(curve->at(row, "objective"), largest, 0.03 * largest) << load << ", row " << row;
+    }
+    if (load == "0.002") {
+      EXPECT_GE(converged, 5);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rubato::testing

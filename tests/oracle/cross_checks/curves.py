@@ -37,7 +37,7 @@ def check(command, seed, folder):
     made = study(seed, folder)
     low, high = 0.3 * made.omega, 2.5 * made.omega
     top = made.log(2, 10)
-    curve = {"name": "curve", "type": "damper_curve", "parameter": "N", "excitation": "Omega",
+    curve = {"name": "curve", "type": "damper_curve", "solver": "periodic", "parameter": "N", "excitation": "Omega",
              "range": {"from": 0.05 * top, "to": top, "points": 6}, "angular_frequency": {"from": low, "to": high, "points": POINTS},
              "observe": [made.pushed] if made.chance(0.5) else made.names}
     observed = curve["observe"]

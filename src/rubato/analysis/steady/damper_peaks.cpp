@@ -260,15 +260,45 @@ const steady::SteadyResponse& DamperPeaks::response_at(double parameter, const P
   response_.status = steady::SteadyStatus::not_converged;
   if (!take(parameter, false) || !take_point(peak.at)) return response_;
   Vector values;
-  solver_->hold(held_, true);
-  const bool has_values = evaluate(*solver_, peak.at, values);
-  solver_->hold(held_, false);
-  if (!held_ || !has_values) return response_;
-  // Of several balances another may have been found beside the peak.
+  const auto solve = [&] {
+    solver_->hold(held_, true);
+    const bool has_values = evaluate(*solver_, peak.at, values);
+    solver_->hold(held_, false);
+    return has_values;
+  };
+  const auto is_the_peak = [&] {
+    return std::abs(values[peak.curve] - peak.value) <= plan_.route.tolerance * std::abs(peak.value);
+  };
+  bool has_values = solve();
+  if (!held_) return response_;
+  // Of several balances another may have been found than that of the peak, which is that of one of its sides.
+  if (!has_values || !is_the_peak())
+    for (const double side : {-1.0, 1.0}) {
+      has_values = approach(peak.at, side) && solve();
+      if (has_values && is_the_peak()) break;
+    }
+  if (!has_values) return response_;
   if (const double apart = std::abs(values[peak.curve] - peak.value); apart > 0.0)
     response_.error = std::max(response_.error, apart / std::abs(peak.value));
   if (!(response_.error <= plan_.route.tolerance)) response_.status = steady::SteadyStatus::not_converged;
   return response_;
+}
+
+/// Follows the response from one side up to a frequency, from afresh; false where the range has no such side.
+bool DamperPeaks::approach(double angular_frequency, double side) {
+  constexpr int most = 40;
+  constexpr double reach = 0.3;
+  const double from = std::clamp(angular_frequency * (1.0 + side * reach), plan_.from, plan_.to);
+  if (from == angular_frequency) return false;
+  const Scan told = scan_;
+  solver_->forget();
+  Vector values;
+  for (int i = 0; i < most && !stop_.load(); ++i) {
+    const double w = from + (angular_frequency - from) * static_cast<double>(i) / most;
+    if (take_point(w)) (void)evaluate(*solver_, w, values);
+  }
+  scan_ = told;
+  return take_point(angular_frequency);
 }
 
 std::string DamperPeaks::excursion() const {

@@ -73,6 +73,7 @@ class DamperPeaks final : public PeakFamily {
   PeakRange range_with_extremes();
   std::vector<Peak> peaks_between(const PeakRange& range);
   void hold(const std::optional<steady::SteadyDiscretisation>& held, bool with_error = false);
+  bool approach(double angular_frequency, double side);
   void include_what_is_needed(double angular_frequency, std::optional<steady::SteadyDiscretisation>& sum);
 
   const DamperCurvePlan& plan_;

@@ -34,7 +34,10 @@ bool HarmonicBalanceSolver::Implementation::attempt_held(const system::Excitatio
     samples_used = held_to->samples > 0 ? held_to->samples : samples_for(orders, 0);
     eq.set_samples(samples_used);
     can_condense = condense(excitation, stride, count + probes, !is_symmetric);
-    if (!can_condense) return false;
+    if (!can_condense) {
+      has_answer = false;
+      return false;
+    }
     bool has_start = has_solution;
     if (has_solution) {
       guess = solution;
@@ -45,8 +48,10 @@ bool HarmonicBalanceSolver::Implementation::attempt_held(const system::Excitatio
     series.resize(orders, !is_symmetric, m);
     firmness = held_to->firmness;
     if (!newton(excitation, has_start, has_solution, effort, response) || firmness_used != held_to->firmness ||
-        !are_slider_forces_resolved(system, excitation, series.mean))
+        !are_slider_forces_resolved(system, excitation, series.mean)) {
+      has_answer = false;  // that of fewer orders is none of those that are held
       return false;
+    }
     recover();
     if (has_laws() && held_with_error && is_whole) (void)sampling_error(probes);
     if (stride == 2 && has_laws() && !laws_act_oddly()) {
