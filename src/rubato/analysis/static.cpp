@@ -28,8 +28,7 @@ std::vector<std::string> findings_of(const integrate::Equilibrium& found) {
         "the loads were raised in {} steps: under all of them at once no equilibrium was found", found.load_steps));
   if (!found.holding.empty())
     findings.push_back(fmt::format("held by the lock of \"{}\"", fmt::join(found.holding, "\", \"")));
-  if (!found.is_stable)
-    findings.push_back("the equilibrium is not stable: a motion that the joints leave goes away from it");
+  if (!found.is_stable) findings.push_back("the equilibrium is not stable: beside it some motion goes away from it");
   return findings;
 }
 

@@ -177,6 +177,9 @@ void require_ends(DamperCurvePlan& plan, const StudyInput& input, const std::str
           at.take_point(point, excitation);
           if (!excitation.harmonics.empty())
             plan.highest = std::max(plan.highest, excitation.harmonics.back().order * excitation.angular_frequency);
+          if (!model->about)
+            plan.negative_stiffness.look_at(model->system().stuck_stiffness(),
+                                            fmt::format("{} = {:.6g}", plan.parameter, value));
           if (model->about && !plan.about) plan.about = std::move(model);
         });
   possibility.require();
@@ -235,6 +238,7 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
                                                          {parameter, "the range of the curve"}};
   for (const std::size_t swept : plan.sweep.places()) given.emplace_back(swept, "the sweep");
   plan.warnings = warn_of_settings(input, given);
+  if (std::string told = plan.negative_stiffness.warning(); !told.empty()) plan.warnings.push_back(std::move(told));
   if (plan.about) {
     plan.request = plan.about->request(plan.observed, plan.request);
     const auto& told = plan.about->about->warnings();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/steady/negative_stiffness.hpp>
 #include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
@@ -52,6 +53,7 @@ struct DamperCurvePlan {
   double points() const { return static_cast<double>(sweep.lines()) * static_cast<double>(values.size()); }
   /// +1 where the lowest objective is best, -1 where the highest is.
   double sign() const { return objective == Objective::amplitude ? 1.0 : -1.0; }
+  NegativeStiffness negative_stiffness = {};  ///< of structures, at the ends of what is swept
 };
 
 /// Evaluates a description and checks that it can run. Throws InvalidInput.

@@ -203,6 +203,9 @@ void require_ends(FrequencyResponsePlan& plan, const StudyInput& input, const st
         if (at.has_period() && !excitation.harmonics.empty())
           plan.route.linear.highest =
               std::max(plan.route.linear.highest, excitation.harmonics.back().order * excitation.angular_frequency);
+        if (!model->about)
+          plan.negative_stiffness.look_at(model->system().stuck_stiffness(),
+                                          fmt::format("{} = {:.6g}", input.parameters[plan.excitation].first, point));
         if (model->about && !plan.about) plan.about = model;
       });
   possibility.require();
@@ -241,6 +244,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the list of frequencies"}};
   for (const std::size_t place : plan.sweep.places()) given.emplace_back(place, "the sweep");
   plan.warnings = warn_of_settings(input, given);
+  if (std::string told = plan.negative_stiffness.warning(); !told.empty()) plan.warnings.push_back(std::move(told));
   if (plan.about) {
     plan.request = plan.about->request(plan.observed, plan.request);
     const auto& told = plan.about->about->warnings();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rubato/analysis/parameter_dependence.hpp>
+#include <rubato/analysis/steady/negative_stiffness.hpp>
 #include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/study_input.hpp>
 #include <rubato/analysis/sweep.hpp>
@@ -58,6 +59,7 @@ struct FrequencyResponsePlan {
   /// How many points are solved one after another: all of a line where each depends on the one before, else a number
   /// that bounds what is kept in memory. What is solved apart begins afresh, whatever the number of threads.
   std::size_t steps_a_piece() const;
+  NegativeStiffness negative_stiffness = {};  ///< of structures, at the ends of what is swept
 };
 
 /// Evaluates a description and checks that it can run. Throws InvalidInput.

@@ -2,6 +2,7 @@
 #include <rubato/integrate/equilibrium/rounding.hpp>
 #include <rubato/integrate/equilibrium/static_by_growth.hpp>
 #include <rubato/integrate/equilibrium/static_equilibrium.hpp>
+#include <rubato/numerics/definiteness.hpp>
 #include <rubato/numerics/newton.hpp>
 #include <rubato/numerics/ordered_factor.hpp>
 
@@ -274,6 +275,8 @@ class StaticSolver {
       result_.reaction[static_cast<Index>(i)] = -residual[held_[i].coordinate];
     result_.outcome = StaticOutcome::found;
     result_.rounding = rounding_of_stiffness(system_, free_, factor_, result_.state.q);
+    result_.is_stable =
+        free_.empty() || !numerics::is_indefinite(tangent(contacts_.holding(result_.state.q), 0.0), factor_);
   }
 
   const system::LocallyNonlinear& system_;

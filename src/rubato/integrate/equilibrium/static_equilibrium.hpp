@@ -24,6 +24,7 @@ struct StaticEquilibrium {
   double reached = 1.0;       ///< share of the loads up to which there is an equilibrium
   int factorisations = 0;
   double rounding = 0.0;  ///< rounding_of_stiffness() [-]
+  bool is_stable = true;  ///< the tangent is not indefinite
 };
 
 /// The state in which
@@ -31,7 +32,8 @@ struct StaticEquilibrium {
 ///   K q + B fc = f(0-) + held forces,   fc = clamp(kT u, -limit, +limit),   u = B^T q,   q_p = held displacement
 ///
 /// and the stops push with fs = max(0, k (u - gap)). The sliders are loaded from zero in one go: their state is the
-/// minimum of a convex energy, and so is q, unique where the stiffness with the sticking sliders is positive definite.
+/// minimum of a convex energy, and so is q, unique where the stiffness with the sticking sliders is positive definite;
+/// where it is indefinite the state is no minimum, and not stable.
 /// Newton's iteration on the set of sticking sliders and closed stops, with a search along the energy; two refinements
 /// of the last solution. Loads are taken just before t = 0: a table that jumps there is released.
 /// Where there are other laws, see grow_equilibrium().

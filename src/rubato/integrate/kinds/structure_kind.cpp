@@ -113,6 +113,7 @@ Equilibrium StructureKind::find_equilibrium(const system::State& /*start*/, std:
   result.outcome = outcome_of(found);
   result.reached = found.reached;
   result.rounding = found.rounding;
+  result.is_stable = found.is_stable;
   for (const Index i : found.moving) result.moving.push_back(name(i));
   if (found.outcome == StaticOutcome::gives_way) result.changing = slipping(found.state, system_);
   if (result.outcome == EquilibriumOutcome::found)
