@@ -5,6 +5,7 @@
 #include "support/memory_sink.hpp"
 #include "support/prepared_study.hpp"
 
+#include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/steady/damper_curve.hpp>
 #include <rubato/analysis/steady/damper_curve_plan.hpp>
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
@@ -365,6 +366,42 @@ TEST(DamperCurve, IsInterruptedBetweenPoints) {
   const auto curve = run(PreparedStudy(one_mass(usual)), 1, nullptr, stop);
   EXPECT_EQ(curve->report.status, RunStatus::interrupted);
   EXPECT_EQ(curve->report.message, "interrupted after 0 of 5 values");
+}
+
+// All values are there, and what is missing is the optimum.
+TEST(DamperCurve, IsInterruptedInSearchOfItsOptimum) {
+  std::atomic<bool> stop{false};
+  struct Stopping final : analysis::Progress {
+    explicit Stopping(std::atomic<bool>& flag) : stop(flag) {}
+    void begin(const std::string&, double, const std::string&) override {}
+    void advance(double done) override { stop = done >= 5.0; }
+    void end() override {}
+    std::atomic<bool>& stop;
+  } progress(stop);
+  const PreparedStudy prepared(one_mass(usual));
+  MemorySink sink;
+  analysis::RunContext context{sink, progress, stop};
+  const auto report = analysis::run_analysis(prepared.study.analyses.front(), prepared.input(), context);
+  EXPECT_EQ(report.status, RunStatus::interrupted);
+  EXPECT_EQ(report.message, "interrupted after all 5 values, in the search for the optimum");
+  EXPECT_EQ(sink.tables.at("damper").rows.size(), 5u);
+}
+
+// The highest peak of the table of peaks is that of the curve, with its status and error, and each other has its own.
+TEST(DamperCurve, TellsWhatBecameOfEachPeak) {
+  for (const std::string solver : {"periodic", "harmonic_balance"}) {
+    const auto curve = run(PreparedStudy(one_mass(usual + "solver = \"" + solver + "\"\n")));
+    ASSERT_FALSE(curve->rows("peaks").empty());
+    for (std::size_t row = 0; row < curve->rows("peaks").size(); ++row) {
+      EXPECT_EQ(curve->at(row, "status", "", "peaks"), 0.0);
+      EXPECT_GE(curve->at(row, "error", "", "peaks"), 0.0);
+      for (std::size_t i = 0; i < curve->rows().size(); ++i) {
+        if (curve->at(row, "angular_frequency", "", "peaks") == curve->at(i, "angular_frequency")) {
+          EXPECT_EQ(curve->at(row, "error", "", "peaks"), curve->at(i, "error"));
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

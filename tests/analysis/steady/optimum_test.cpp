@@ -15,7 +15,8 @@ class Bells : public PeakFamily {
     std::function<double(double)> height, place;
     double width = 0.1;
   };
-  Bells(std::vector<Bell> bells, bool are_apart = false) : bells_(std::move(bells)), are_apart_(are_apart) {}
+  Bells(std::vector<Bell> bells, bool are_apart = false, std::vector<double> besides = {})
+      : bells_(std::move(bells)), are_apart_(are_apart), range_{1.0, 4.0, 33, std::move(besides)} {}
 
   std::vector<Peak> peaks(double p) override { return find_peaks(curves(p), range_); }
   std::optional<Peak> follow(double p, const Peak& known) override { return follow_peak(curves(p), range_, known); }
@@ -44,7 +45,7 @@ class Bells : public PeakFamily {
 
   std::vector<Bell> bells_;
   bool are_apart_;
-  PeakRange range_{1.0, 4.0, 33, {}};
+  PeakRange range_;
 };
 
 TEST(Optimum, OfOnePeakIsWhereBothDerivativesVanish) {
@@ -103,6 +104,34 @@ TEST(Optimum, OfTwoEqualPeaksHasMultipliersThatWeighTheirDerivativesToZero) {
     EXPECT_NEAR(found->multiplier[first], 2.0 / 3.0, 1e-6);
     EXPECT_NEAR(found->multiplier[0] * found->derivative[0] + found->multiplier[1] * found->derivative[1], 0.0, 1e-12);
   }
+}
+
+// As blades that are mistuned by little, or masses that are coupled weakly.
+TEST(Optimum, OfTwoEqualPeaksThatAreCloseIsTheirCrossing) {
+  for (const double apart : {0.1, 0.03, 0.01, 0.002}) {
+    const double width = 0.15 * apart;
+    Bells bells(
+        {{[](double p) { return p; }, [](double) { return 2.0; }, width},
+         {[](double p) { return 8.0 / (p * p); }, [&](double p) { return 2.0 + apart + 1e-3 * apart * p; }, width}},
+        false, {2.0 - apart, 2.0, 2.0 + 0.5 * apart, 2.0 + apart, 2.0 + 2.0 * apart});
+    const auto found = bells.optimum(0.7, 4.9, 9);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->kind, Optimum::Kind::kink) << apart;
+    EXPECT_NEAR(found->parameter, 2.0, 1e-7);
+    ASSERT_EQ(found->active.size(), 2u);
+    const std::size_t first = found->active[0].at < 2.0 + 0.5 * apart ? 0 : 1;
+    EXPECT_NEAR(found->derivative[first], 1.0, 1e-5);
+    EXPECT_NEAR(found->derivative[1 - first], -2.0, 1e-5);
+  }
+}
+
+// One peak that moves by a third of its place over the range is one all the same.
+TEST(Optimum, OfOnePeakThatMovesIsSmooth) {
+  Bells bells({{[](double p) { return 3.0 + 0.5 * (p - 2.3) * (p - 2.3); }, [](double p) { return 1.3 + 0.5 * p; }}});
+  const auto found = bells.optimum(0.5, 5.0, 10);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, Optimum::Kind::smooth);
+  EXPECT_NEAR(found->parameter, 2.3, 1e-6);
 }
 
 TEST(Optimum, BeyondTheRangeIsItsEnd) {

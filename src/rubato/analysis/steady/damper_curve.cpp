@@ -256,8 +256,8 @@ class Lines {
       DamperPeaks& family = *families_.local();
       family.take_line(line);
       try {
-        DamperValue value =
-            solve_value(family, plan_.values[i], with_limits_ && (i == 0 || plan_.limits_follow_parameter));
+        DamperValue value = solve_value(family, plan_.values[i], plan_.sweep.kind() != Sweep::Kind::random,
+                                        with_limits_ && (i == 0 || plan_.limits_follow_parameter));
         if (stop_.load()) return;  // what was broken off is no result
         values[i] = std::move(value);
       } catch (const Stopped&) {
@@ -327,7 +327,10 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   const double lost = counts.of(PointStatus::not_converged).count + counts.of(PointStatus::impossible).count;
   if (was_interrupted || counts.total() < plan.points()) {
     report.status = RunStatus::interrupted;
-    report.message = fmt::format("interrupted after {:.0f} of {:.0f} values", counts.total(), plan.points());
+    report.message =
+        counts.total() < plan.points()
+            ? fmt::format("interrupted after {:.0f} of {:.0f} values", counts.total(), plan.points())
+            : fmt::format("interrupted after all {:.0f} values, in the search for the optimum", counts.total());
   } else if (lost == counts.total()) {
     report.status = RunStatus::failed;
     report.message = "no value has a peak; the warnings and the column `status` say why";

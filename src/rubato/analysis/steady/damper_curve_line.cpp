@@ -152,7 +152,18 @@ DamperLineResult DamperLineResult::unpacked(long line, const DamperCurveTables& 
   return result;
 }
 
-DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits) {
+namespace {
+
+/// What became of a peak whose response is known: where points beside it do not converge it is the best found, and
+/// none.
+PointStatus status_of(const Peak& peak, const steady::SteadyResponse& response) {
+  const PointStatus status = point_status(response.status);
+  return status == PointStatus::converged && !peak.is_closed ? PointStatus::not_converged : status;
+}
+
+}  // namespace
+
+DamperValue solve_value(DamperPeaks& family, double parameter, bool with_peaks, bool with_limits) {
   DamperValue value;
   value.is_done = true;
   value.peaks = family.peaks(parameter);
@@ -168,15 +179,18 @@ DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits)
     value.response.residual = value.response.error = nothing;
   } else if (!value.peaks.empty()) {
     value.response = family.response_at(parameter, value.peaks.front());
-    value.status = point_status(value.response.status);
+    value.status = status_of(value.peaks.front(), value.response);
     value.moves_far = !family.excursion().empty();
-    // Where points beside the highest do not converge it is the best found, and no peak.
-    if (value.status == PointStatus::converged && !value.peaks.front().is_closed)
-      value.status = PointStatus::not_converged;
   } else if (count(PointStatus::drifting) > 0) {
     value.status = PointStatus::drifting;
   } else if (count(PointStatus::impossible) > 0) {
     value.status = PointStatus::impossible;
+  }
+  for (std::size_t k = 0; with_peaks && k < value.peaks.size(); ++k) {
+    const bool is_highest = k == 0;
+    const auto& response = is_highest ? value.response : family.response_at(parameter, value.peaks[k]);
+    value.peak_status.push_back(is_highest ? value.status : status_of(value.peaks[k], response));
+    value.peak_error.push_back(response.error);
   }
   if (with_limits) {
     value.limits.emplace();
@@ -210,8 +224,9 @@ DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTable
     if (value.status == PointStatus::converged) objectives[i] = top->value;
     tables.add(keys, parameter, top, value.peaks.size(), value.response, value.status, result.main);
     const auto found = numbers.next(value.peaks);
-    for (std::size_t k = 0; k < found.size(); ++k)
-      tables.add_peak(keys, parameter, found[k], value.peaks[k], result.peaks);
+    for (std::size_t k = 0; k < value.peak_status.size(); ++k)
+      tables.add_peak(keys, parameter, found[k], value.peaks[k], value.peak_error[k], value.peak_status[k],
+                      result.peaks);
     if (value.limits) limits = *value.limits;
     tables.add_limits(keys, parameter, limits[0], limits[1], result.linear);
     count_value(value, before + static_cast<double>(i), result.counts);

@@ -40,14 +40,16 @@ struct DamperValue {
   std::vector<Peak> peaks;
   steady::SteadyResponse response;
   PointStatus status = PointStatus::not_converged;
+  std::vector<PointStatus> peak_status;  ///< of each peak; empty where they were not asked for
+  std::vector<double> peak_error;        ///< of the amplitudes there, relative
   DamperPeaks::Scan scan;
   bool moves_far = false;  ///< of a mechanism: beyond small motions
   std::optional<steady::SteadyDiscretisation> discretisation;
   std::optional<std::array<std::optional<Peak>, 2>> limits;  ///< free and stuck, where they were asked for
 };
 
-/// Solves one value; `with_limits`: also the linear limits.
-DamperValue solve_value(DamperPeaks& family, double parameter, bool with_limits);
+/// Solves one value; `with_peaks`: also the response at each lower peak; `with_limits`: also the linear limits.
+DamperValue solve_value(DamperPeaks& family, double parameter, bool with_peaks, bool with_limits);
 
 /// The rows of a line from its values, and its optimum.
 DamperLineResult finish_line(const DamperCurvePlan& plan, const DamperCurveTables& tables, long line,

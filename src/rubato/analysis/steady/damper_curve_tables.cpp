@@ -152,6 +152,8 @@ DamperCurveTables::DamperCurveTables(const std::string& name, const DamperCurveP
   peak.push_back(scalar("objective", unit, "value of the peak"));
   if (is_amplitude_) peak.push_back(words("largest", "whose amplitude it is", labels));
   peak.push_back(words("place", "within the frequencies, or at an end of them", places()));
+  peak.push_back(scalar("error", "1", "estimated error of the amplitudes, relative to the largest"));
+  peak.push_back(words("status", "what became of the peak", status_words()));
   peaks_ = {name, "peaks", "peak_of_value", peak, {}};
 
   std::vector<Block> optimum = blocks;
@@ -216,11 +218,12 @@ void DamperCurveTables::add_limits(std::span<const double> line, double paramete
 }
 
 void DamperCurveTables::add_peak(std::span<const double> line, double parameter, long number, const Peak& peak,
-                                 std::vector<double>& rows) const {
+                                 double error, PointStatus status, std::vector<double>& rows) const {
   append(line, rows);
   rows.insert(rows.end(), {parameter, static_cast<double>(number), peak.at, peak.value});
   if (is_amplitude_) rows.push_back(static_cast<double>(peak.curve));
   rows.push_back(static_cast<double>(peak.kind));
+  rows.insert(rows.end(), {error, static_cast<double>(status)});
 }
 
 void DamperCurveTables::add_optimum(std::span<const double> line, const Optimum& optimum,

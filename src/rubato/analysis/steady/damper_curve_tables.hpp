@@ -36,8 +36,8 @@ class DamperCurveTables {
            const steady::SteadyResponse& response, PointStatus status, std::vector<double>& rows) const;
   void add_limits(std::span<const double> line, double parameter, const std::optional<Peak>& free,
                   const std::optional<Peak>& stuck, std::vector<double>& rows) const;
-  void add_peak(std::span<const double> line, double parameter, long number, const Peak& peak,
-                std::vector<double>& rows) const;
+  void add_peak(std::span<const double> line, double parameter, long number, const Peak& peak, double error,
+                PointStatus status, std::vector<double>& rows) const;
   void add_optimum(std::span<const double> line, const Optimum& optimum, const steady::SteadyResponse& response,
                    std::vector<double>& rows) const;
 

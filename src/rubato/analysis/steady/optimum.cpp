@@ -22,8 +22,9 @@ struct Precision {
   double round_off;   // of F: what is as near does not change
 };
 
-constexpr double close_enough = 1e-4;  // of p, for the end of Brent's method
-constexpr double same_branch = 0.02;   // of x: how far a peak moves in a difference of p, at most
+constexpr double close_enough = 1e-4;   // of p, for the end of Brent's method
+constexpr double same_place = 1e-5;     // of x: what the place of a peak errs by
+constexpr double farthest_move = 0.02;  // of x: how far a peak moves in a difference of p, at most
 constexpr int most_rounds = 60, most_newton = 20;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -98,7 +99,7 @@ class Refinement : private Precision {
     const double inside = std::clamp(p, low_ + h, high_ - h);
     const auto before = top(inside - h), after = top(inside + h);
     if (!before || !after) return std::nullopt;
-    if (is_same(*before, *after)) {
+    if (is_same(*before, inside + h, *after)) {
       if (auto found = smooth(inside, *before)) return found;
     } else if (auto found = kink(inside, *before, *after)) {
       return found;
@@ -126,8 +127,14 @@ class Refinement : private Precision {
     if (peaks.empty()) return std::nullopt;
     return peaks.front();
   }
-  bool is_same(const Peak& a, const Peak& b) const {
-    return a.curve == b.curve && a.kind == b.kind && std::abs(a.at - b.at) <= same_branch * std::abs(a.at);
+  // Whether a peak has become another at p. Two that are close, as of weakly coupled masses, are told apart by
+  // following: one of them stays where it was, or nearly.
+  bool is_same(const Peak& a, double p, const Peak& b) {
+    const double apart = std::abs(a.at - b.at);
+    if (a.curve != b.curve || a.kind != b.kind || apart > farthest_move * std::abs(a.at)) return false;
+    if (apart <= same_place * std::abs(a.at)) return true;
+    const auto followed = family_.follow(p, a);
+    return followed && std::abs(followed->at - b.at) <= std::max(same_place * std::abs(a.at), 0.25 * apart);
   }
   double slope(double p, const Peak& peak) {
     const double h =
@@ -211,7 +218,7 @@ class Refinement : private Precision {
     Optimum result{Optimum::Kind::uncertified, p, {*here}, {nan, 0.0}, {1.0, 0.0}, 0.0};
     if (!before || !after || !near_before || !near_after) return result;
     // The best point was not near enough before to see that the highest peaks at its sides are two.
-    if (!is_same(*near_before, *near_after))
+    if (!is_same(*near_before, p + 0.5 * h, *near_after))
       if (auto found = kink(p, *near_before, *near_after)) return found;
     const double left = (here->value - before->value) / h, right = (after->value - here->value) / h;
     const double near_left = (here->value - near_before->value) / (0.5 * h),
