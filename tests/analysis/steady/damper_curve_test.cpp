@@ -289,8 +289,8 @@ TEST(DamperCurve, SaysWhereItIsInfinite) {
   // Nor is the stuck resonance, which has no dashpot either, infinite: at w^2 = 2 the mass slips beyond X = R/kT just
   // as far as to take pi f0 X.
   EXPECT_EQ(curve->at(4, "status"), 0.0);
-  EXPECT_THAT(curve->report.warnings.at(0),
-              HasSubstr("at N0 = 0 the loads meet a resonance without damping: the response is infinite"));
+  EXPECT_THAT(curve->report.warnings.at(0), HasSubstr("at N0 = 0 the loads meet a resonance without damping, or push "
+                                                      "what nothing holds: the response is infinite"));
 }
 
 TEST(DamperCurve, WarnsOfPeaksAtTheEndOfTheFrequenciesAndOfLoadsThatPull) {

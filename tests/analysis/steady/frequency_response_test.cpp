@@ -1,15 +1,18 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/memory_sink.hpp"
 #include "support/prepared_study.hpp"
 
+#include <rubato/analysis/run_study.hpp>
 #include <rubato/analysis/steady/frequency_response.hpp>
 #include <rubato/analysis/steady/frequency_response_plan.hpp>
 #include <rubato/analysis/steady/frequency_text.hpp>
 #include <rubato/analysis/steady/status_counts.hpp>
 #include <rubato/steady/linear/linear_response.hpp>
 
+#include <atomic>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -411,9 +414,9 @@ TEST(FrequencyResponse, CallsAResonanceWithoutDampingInfinite) {
   EXPECT_NEAR(result->at(0, "amplitude", "mass"), 1.0 / 3.0, 1e-15);
   EXPECT_EQ(result->at(1, "status"), 4.0);  // unbounded
   EXPECT_EQ(result->at(1, "amplitude", "mass"), std::numeric_limits<double>::infinity());
-  EXPECT_THAT(result->report.warnings,
-              ElementsAre("at angular_frequency = 2 rad/s the loads meet a resonance without damping: the response is "
-                          "infinite (1 point)"));
+  EXPECT_THAT(result->report.warnings, ElementsAre("at angular_frequency = 2 rad/s the loads meet a resonance without "
+                                                   "damping, or push what nothing holds: the response is "
+                                                   "infinite (1 point)"));
 }
 
 TEST(FrequencyResponse, GoesOnPastCombinationsThatNoModelCanHave) {
@@ -434,6 +437,50 @@ TEST(FrequencyText, TellsHertzBesideWhereAStudyExcitesByHertz) {
   EXPECT_EQ(frequency_text(7.5, 1.0), "angular_frequency = 7.5 rad/s");
   EXPECT_EQ(frequency_text(4.0 * std::numbers::pi, 0.5 / std::numbers::pi),
             "angular_frequency = 12.5663706 rad/s (2 Hz)");
+}
+
+// Three masses that float, with a slider between the outer ones, under a static push on each end.
+std::string floating(double push, double other, const std::string& solver) {
+  std::string text = "[parameters]\nOmega = 1.0\n[damping]\nrayleigh = { mass = 0.0, stiffness = 0.01 }\n";
+  for (const char* name : {"a", "b", "c"}) text += fmt::format("[[coordinate]]\nname = \"{}\"\nmass = 1.0\n", name);
+  for (const auto& [one, two] : {std::pair{"a", "b"}, {"b", "c"}})
+    text += fmt::format("[[spring]]\nbetween = [\"{}\", \"{}\"]\nstiffness = 20.0\n", one, two);
+  text +=
+      "[[slider]]\nname = \"rub\"\nbetween = [\"a\", \"c\"]\nstiffness = 10.0\nfriction_coefficient = 0.5\n"
+      "normal_load = 1.0\n[[force]]\non = \"a\"\namplitude = 1.0\nangular_frequency = \"Omega\"\n";
+  for (const auto& [on, force] : {std::pair{"a", push}, {"c", other}})
+    if (force != 0.0) text += fmt::format("[[force]]\non = \"{}\"\nexpression = \"{}\"\n", on, force);
+  return text + fmt::format(
+                    "[[analysis]]\nname = \"frf\"\ntype = \"frequency_response\"\nangular_frequency = [1.0, 3.0, 5.0]\n"
+                    "observe = [\"a - b\", \"c\"]\nsolver = \"{}\"\n",
+                    solver);
+}
+
+// What nothing holds gains speed for ever under a mean force: no row may look like an answer.
+TEST(FrequencyResponse, OfWhatFloatsUnderAStaticPushIsUnbounded) {
+  const auto answer = [](const std::string& text) {
+    const PreparedStudy prepared(text);
+    MemorySink sink;
+    QuietProgress progress;
+    const std::atomic<bool> stop{false};
+    analysis::RunContext context{sink, progress, stop};
+    (void)analysis::run_analysis(prepared.study.analyses.front(), prepared.input(), context);
+    return std::move(sink.tables.at("frf"));
+  };
+  for (const std::string solver : {"periodic", "harmonic_balance"}) {
+    const auto pushed = answer(floating(0.1, 0.0, solver));
+    ASSERT_EQ(pushed.rows.size(), 3u);
+    for (const auto& row : pushed.rows)
+      EXPECT_EQ(row[pushed.column("status")], static_cast<double>(analysis::PointStatus::unbounded)) << solver;
+  }
+  // Pushes that balance only stretch it.
+  const auto exact = answer(floating(0.1, -0.1, "periodic")), series = answer(floating(0.1, -0.1, "harmonic_balance"));
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(exact.rows[i][exact.column("status")], 0.0);
+    EXPECT_LT(exact.rows[i][exact.column("residual")], 1e-9);
+    const double size = exact.rows[i][exact.column("amplitude", "c")];
+    EXPECT_NEAR(series.rows[i][series.column("amplitude", "c")], size, 1e-2 * size);
+  }
 }
 
 }  // namespace

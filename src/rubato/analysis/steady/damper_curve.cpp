@@ -171,8 +171,9 @@ class Warnings {
       warnings.push_back(
           fmt::format("at {} {} ({})", place_of(far.first), excursion_of(far.first), values_text(far.count)));
     if (const Tally& unbounded = counts_.of(PointStatus::unbounded); unbounded.count > 0.0)
-      warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
-                                     place_of(unbounded.first), values_text(unbounded.count)));
+      warnings.push_back(fmt::format(
+          "at {} the loads meet a resonance without damping, or push what nothing holds: the response is infinite ({})",
+          place_of(unbounded.first), values_text(unbounded.count)));
     if (counts_.walks.count > 0.0)
       warnings.push_back(
           fmt::format("at {} and some frequencies the structure walks over its sliders, and has no "

@@ -161,8 +161,9 @@ std::vector<std::string> warnings_of(const FrequencyResponsePlan& plan, const St
         fmt::format("at {} {} ({} with such a motion)", place_of(plan, far.first), told, points_text(far.count)));
   }
   if (const Tally& unbounded = counts.of(PointStatus::unbounded); unbounded.count > 0.0)
-    warnings.push_back(fmt::format("at {} the loads meet a resonance without damping: the response is infinite ({})",
-                                   place_of(plan, unbounded.first), points_text(unbounded.count)));
+    warnings.push_back(fmt::format(
+        "at {} the loads meet a resonance without damping, or push what nothing holds: the response is infinite ({})",
+        place_of(plan, unbounded.first), points_text(unbounded.count)));
   if (const Tally& drifting = counts.of(PointStatus::drifting); drifting.count > 0.0) {
     const auto [line, step] = split(drifting.first);
     warnings.push_back(

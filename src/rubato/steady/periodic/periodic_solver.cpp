@@ -21,6 +21,8 @@ constexpr double fine_balance = 2e-11;  // of the works in a period
 constexpr double walking = 1e-9;        // drift over a period, relative to the state, that is none of round-off
 constexpr int rest_periods = 20;
 
+constexpr double still_an_orbit = 1e-8;  // residual of one that was put elsewhere along its free motions
+
 double imbalance(const SteadyResponse& response) {
   return std::abs(response.input_work - response.viscous_work - response.dissipated.sum()) /
          std::abs(response.input_work);
@@ -78,6 +80,17 @@ void PeriodicSolver::require_memory(const system::Excitation& excitation) const 
 void PeriodicSolver::forget() {
   known_.clear();
   centre_.setZero();
+}
+
+// A motion that nothing holds gains speed for ever where static loads push along it.
+bool PeriodicSolver::is_pushed_away(const system::Excitation& excitation) const {
+  constexpr double round_off = 1e-12;
+  if (excitation.constant.size() == 0) return false;
+  for (Index k = 0; k < free_.cols(); ++k) {
+    const auto shares = free_.col(k).cwiseProduct(excitation.constant);
+    if (std::abs(shares.sum()) > round_off * shares.cwiseAbs().sum()) return true;
+  }
+  return false;
 }
 
 Waveform PeriodicSolver::waveform(int points) const { return orbit_.waveform(last_, half_, points); }
@@ -155,11 +168,16 @@ void PeriodicSolver::solve(const system::Excitation& excitation, SteadyStart sta
   last_ = excitation;
   response.periods = 1;
   response.iterations = 0;
+  if (is_pushed_away(excitation)) {
+    make_unbounded(request_, m_, response);
+    known_.clear();
+    return;
+  }
   flow_.set_excitation(excitation);
   take_start(excitation, start);
 
   response.status = SteadyStatus::not_converged;
-  const bool converged = iterate(excitation, response) || iterate_from_elsewhere(excitation, response);
+  bool converged = iterate(excitation, response) || iterate_from_elsewhere(excitation, response);
   if (response.status == SteadyStatus::unbounded) {
     make_unbounded(request_, m_, response);
     known_.clear();
@@ -167,7 +185,8 @@ void PeriodicSolver::solve(const system::Excitation& excitation, SteadyStart sta
   }
   if (converged && free_.cols() > 0) {
     place_free_motions(excitation);
-    if (pass(excitation)) response.residual = residual(excitation);
+    response.residual = pass(excitation) ? residual(excitation) : std::numeric_limits<double>::infinity();
+    converged = response.residual <= still_an_orbit;
   }
   if (converged) response.status = drift(excitation) > walking ? SteadyStatus::drifting : SteadyStatus::converged;
   measure(excitation, response);

@@ -71,6 +71,7 @@ class PeriodicSolver final : public SteadySolver {
   Matrix open_motions() const;
   void hold_rigid_motions();
   void place_free_motions(const system::Excitation& excitation);
+  bool is_pushed_away(const system::Excitation& excitation) const;
   double drift(const system::Excitation& excitation) const;
   void measure(const system::Excitation& excitation, SteadyResponse& response);
   double most_pieces() const;
