@@ -13,9 +13,16 @@ namespace {
 constexpr Index largest = 300;       // coordinates: all modes are sought
 constexpr double round_off = 1e-12;  // of a motion
 
+Matrix rigid_motions(const system::LocallyNonlinear& system) {
+  if (system.size() > largest) return Matrix(system.size(), 0);
+  const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
+  return modes.shapes.leftCols((modes.eigenvalues.array() == 0.0).count());
+}
+
 }  // namespace
 
 Matrix kernel_of(const Matrix& map, const Matrix& motions) {
+  if (motions.cols() == 0 || map.rows() == 0) return motions;
   const Eigen::FullPivLU<Matrix> lu(map);
   const Index count = motions.cols() > 0 ? lu.dimensionOfKernel() : 0;
   if (count == 0) return Matrix(motions.rows(), 0);
@@ -24,22 +31,24 @@ Matrix kernel_of(const Matrix& map, const Matrix& motions) {
 }
 
 Matrix free_motions(const system::LocallyNonlinear& system, const Matrix& rigid) {
-  const Index n = system.size(), contacts = system.contact_count();
-  if (rigid.cols() == 0) return Matrix(n, 0);
+  const Matrix unseen = unseen_motions(system, rigid);
   const double damping = std::max(system.damping().norm(), std::numeric_limits<double>::min());
-  Matrix resisted(contacts + n, rigid.cols());
-  for (Index k = 0; k < rigid.cols(); ++k) {
-    const Vector motion = rigid.col(k) / rigid.col(k).norm();
-    for (Index i = 0; i < contacts; ++i) resisted(i, k) = system.relative_displacement(i, motion);
-    resisted.col(k).tail(n) = system.damping() * motion / damping;
-  }
-  return kernel_of((resisted.array().abs() < round_off).select(0.0, resisted), rigid);
+  Matrix resisted(system.size(), unseen.cols());
+  for (Index k = 0; k < unseen.cols(); ++k)
+    resisted.col(k) = system.damping() * unseen.col(k) / (damping * unseen.col(k).norm());
+  return kernel_of((resisted.array().abs() < round_off).select(0.0, resisted), unseen);
 }
 
-Matrix free_motions(const system::LocallyNonlinear& system) {
-  if (system.size() > largest) return Matrix(system.size(), 0);
-  const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
-  return free_motions(system, modes.shapes.leftCols((modes.eigenvalues.array() == 0.0).count()));
+Matrix unseen_motions(const system::LocallyNonlinear& system, const Matrix& rigid) {
+  Matrix seen(system.contact_count(), rigid.cols());
+  for (Index k = 0; k < rigid.cols(); ++k)
+    for (Index i = 0; i < seen.rows(); ++i)
+      seen(i, k) = system.relative_displacement(i, rigid.col(k)) / rigid.col(k).norm();
+  return kernel_of((seen.array().abs() < round_off).select(0.0, seen), rigid);
 }
+
+Matrix unseen_motions(const system::LocallyNonlinear& system) { return unseen_motions(system, rigid_motions(system)); }
+
+Matrix free_motions(const system::LocallyNonlinear& system) { return free_motions(system, rigid_motions(system)); }
 
 }  // namespace rubato::steady

@@ -14,7 +14,14 @@ Matrix kernel_of(const Matrix& map, const Matrix& motions);
 /// @param rigid  motions that no spring resists, phi^T M phi = 1 [n x r]
 Matrix free_motions(const system::LocallyNonlinear& system, const Matrix& rigid);
 
-/// Likewise, for a structure whose rigid motions are not known yet. None for more than 300 coordinates.
+/// The rigid motions that no slider and no stop sees, whether dashpots resist them or not: the place along them is of
+/// no consequence, and a static load may carry the structure off along them.
+Matrix unseen_motions(const system::LocallyNonlinear& system, const Matrix& rigid);
+
+/// The same for a structure whose rigid motions are not known yet. None for more than 300 coordinates.
+Matrix unseen_motions(const system::LocallyNonlinear& system);
+
+/// free_motions(), for a structure whose rigid motions are not known yet. None for more than 300 coordinates.
 Matrix free_motions(const system::LocallyNonlinear& system);
 
 }  // namespace rubato::steady

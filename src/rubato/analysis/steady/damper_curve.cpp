@@ -329,7 +329,7 @@ RunReport run_damper_curve(const std::string& name, const DamperCurvePlan& plan,
   if (was_interrupted || counts.total() < plan.points()) {
     report.status = RunStatus::interrupted;
     report.message =
-        counts.total() < plan.points()
+        counts.total() < plan.points() || !plan.has_optimum
             ? fmt::format("interrupted after {:.0f} of {:.0f} values", counts.total(), plan.points())
             : fmt::format("interrupted after all {:.0f} values, in the search for the optimum", counts.total());
   } else if (lost == counts.total()) {

@@ -150,7 +150,7 @@ bool HarmonicBalanceSolver::Implementation::shoot(const system::Excitation& exci
     solver->solve(excitation, offsets_from, motion);
   }
   const bool repeats = motion.status == SteadyStatus::converged && (may_repeat || !can_condense);
-  if (motion.status != SteadyStatus::drifting && !repeats) return false;
+  if (motion.status != SteadyStatus::drifting && motion.status != SteadyStatus::unbounded && !repeats) return false;
   motion.iterations += response.iterations;
   response = std::move(motion);
   shot = std::move(solver);

@@ -43,13 +43,21 @@ void refuse_loads_on(const Matrix& free_motions, const system::Excitation& excit
     }
 }
 
+// Sliders, dashpots and laws take over a period what the loads give. Far away and at great speed, where what a period
+// adds is nothing, they do not.
+bool is_balanced(const SteadyResponse& response) {
+  constexpr double missing = 0.1;
+  const double taken = response.viscous_work + response.dissipated.sum() + response.law_dissipated.sum();
+  return std::abs(response.input_work - taken) <= missing * std::max(std::abs(response.input_work), std::abs(taken));
+}
+
 }  // namespace
 
 // Once a structure is far away what a period adds is nothing beside the way that it has gone, and it seems to repeat.
 bool TimeMarchingSolver::is_unbounded(const system::Excitation& excitation, SteadyStatus found) {
   const bool is_loaded = has_static_load(excitation);
-  for (Index k = 0; is_loaded && k < free_.cols(); ++k)
-    if (drives(free_.col(k), excitation.constant.cast<Complex>())) return true;
+  for (Index k = 0; is_loaded && k < unseen_.cols(); ++k)
+    if (drives(unseen_.col(k), excitation.constant.cast<Complex>())) return true;
   if (system_.stop_count() > 0 || system_.has_laws()) return false;  // they may bound the motion
   // A march that does not repeat may wander for reasons of its own: only a resonance without damping is infinite. One
   // that drifts may have been led to a speed beside which what a period adds is nothing.
@@ -66,6 +74,7 @@ TimeMarchingSolver::TimeMarchingSolver(const system::LocallyNonlinear& system, T
     : system_(system), options_(std::move(options)), request_(std::move(request)) {
   check_options(options_, system);
   free_ = free_motions(system);
+  unseen_ = unseen_motions(system);
   if (options_.periodicity == 0.0) options_.periodicity = 0.01 * options_.tolerance;
   longest_step_ = longest_step(options_.method, system);
   resolved_frequency_ =
@@ -173,6 +182,9 @@ bool TimeMarchingSolver::solve_with(Engine& engine, std::span<const system::Exci
       states.col(static_cast<Index>(l)).setConstant(not_a_number);
       engine.extrapolation->distrust(static_cast<Index>(l));
     }
+  for (SteadyResponse& response : responses)
+    if (response.status == SteadyStatus::drifting && !is_balanced(response))
+      response.status = SteadyStatus::not_converged;
   steps_ = engine.steps = steps;
   engine.next_steps = 8 * static_cast<int>(std::ceil(std::min<double>(suggestion, options_.max_steps) / 8.0));
   for (std::size_t l = 0; l < count; ++l) {

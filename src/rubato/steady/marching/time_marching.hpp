@@ -85,6 +85,7 @@ class TimeMarchingSolver final : public SteadySolver {
   int order_;
   bool transitions_rule_;  ///< the error comes from transitions between the samples more than from the method
   Vector slider_stiffness_;
+  Matrix unseen_;                               // rigid motions that no contact sees [n x any]
   Matrix free_;                                 ///< motions of a structure that floats [n x any]
   std::optional<UndampedResonance> resonance_;  ///< once asked for
   std::unique_ptr<Engine> lanes_, steppers_;    // lanes_ may be null

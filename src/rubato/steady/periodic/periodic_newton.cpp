@@ -156,6 +156,7 @@ bool PeriodicSolver::iterate_from_elsewhere(const system::Excitation& excitation
       guess(excitation);
     else
       y_.setZero();
+    y_.head(n_) -= along_unseen(y_.head(n_));
     if (iterate(excitation, response)) return true;
     if (response.residual < least) {
       least = response.residual;

@@ -21,6 +21,7 @@ constexpr double fine_balance = 2e-11;  // of the works in a period
 constexpr double walking = 1e-9;        // drift over a period, relative to the state, that is none of round-off
 constexpr int rest_periods = 20;
 
+constexpr double lost = 1e-3;            // error at which round-off has taken the amplitudes
 constexpr double still_an_orbit = 1e-8;  // residual of one that was put elsewhere along its free motions
 
 double imbalance(const SteadyResponse& response) {
@@ -53,9 +54,11 @@ PeriodicSolver::PeriodicSolver(const system::LocallyNonlinear& system, SteadyReq
   y_ = difference_ = correction_ = best_ = Vector::Zero(2 * n_ + m_);
   const numerics::SymmetricModes modes = numerics::all_modes(system.stiffness(), system.mass());
   const Index rigid = (modes.eigenvalues.array() == 0.0).count();
+  unseen_.resize(n_, 0);
   if (m_ > 0) {
     rigid_ = modes.shapes.leftCols(rigid);
     free_ = free_motions(system, rigid_);
+    unseen_ = unseen_motions(system, rigid_);
   }
   fastest_ = std::sqrt(std::max(0.0, modes.eigenvalues.maxCoeff()));
   wanted_offset_ = centre_ = Vector::Zero(m_);
@@ -82,12 +85,18 @@ void PeriodicSolver::forget() {
   centre_.setZero();
 }
 
-// A motion that nothing holds gains speed for ever where static loads push along it.
+// What a place shares with the rigid motions that only dashpots resist. A stiffness that is round-off alone predicts
+// them far away, where the rest is lost.
+Vector PeriodicSolver::along_unseen(const Vector& position) const {
+  return unseen_ * (unseen_.transpose() * (system_.mass() * position));
+}
+
+// A motion that neither springs nor contacts hold goes on for ever where static loads push along it.
 bool PeriodicSolver::is_pushed_away(const system::Excitation& excitation) const {
   constexpr double round_off = 1e-12;
   if (excitation.constant.size() == 0) return false;
-  for (Index k = 0; k < free_.cols(); ++k) {
-    const auto shares = free_.col(k).cwiseProduct(excitation.constant);
+  for (Index k = 0; k < unseen_.cols(); ++k) {
+    const auto shares = unseen_.col(k).cwiseProduct(excitation.constant);
     if (std::abs(shares.sum()) > round_off * shares.cwiseAbs().sum()) return true;
   }
   return false;
@@ -153,6 +162,7 @@ void PeriodicSolver::take_start(const system::Excitation& excitation, SteadyStar
     march_from_rest(excitation);
   else
     predict(excitation);
+  y_.head(n_) -= along_unseen(y_.head(n_));
   half_ = excitation.is_half_wave_symmetric() && (wanted_offset_.array() == 0.0).all();
 }
 
@@ -213,9 +223,14 @@ void PeriodicSolver::solve(const system::Excitation& excitation, SteadyStart sta
   // After a full step of Newton its matrix is as good as the one here would be.
   if (!near_factors_) factorise();
   if (correct() && largest > 0.0) {
+    correction_.head(n_) -= along_unseen(correction_.head(n_));
     Vector rates = Vector::Zero(y_.size());
     rates.head(n_) = correction_.segment(n_, n_) / excitation.angular_frequency;
     response.error += std::hypot(observed_size(correction_), observed_size(rates)) / largest;
+  }
+  if (converged && !(response.error <= lost)) {
+    converged = false;
+    response.status = SteadyStatus::not_converged;
   }
   if (converged)
     remember(excitation);

@@ -72,6 +72,7 @@ class PeriodicSolver final : public SteadySolver {
   void hold_rigid_motions();
   void place_free_motions(const system::Excitation& excitation);
   bool is_pushed_away(const system::Excitation& excitation) const;
+  Vector along_unseen(const Vector& position) const;
   double drift(const system::Excitation& excitation) const;
   void measure(const system::Excitation& excitation, SteadyResponse& response);
   double most_pieces() const;
@@ -102,6 +103,7 @@ class PeriodicSolver final : public SteadySolver {
   double fastest_ = 0.0;  // natural frequency without sliders [rad/s]
   Vector drift_;          // part of P(y) - y along open motions [n] [m]; the difference is without it
   Matrix rigid_;          // motions without stiffness but for the sliders, phi^T M phi = 1 [n x r]
+  Matrix unseen_;         // of these, those that no slider and no stop sees [n x any]
   Matrix free_;           // of these, in the same way, those that no slider sees and no dashpot resists [n x any]
   Eigen::PartialPivLU<Matrix> factors_;
   bool factors_are_of_orbit_ = false;
