@@ -4,6 +4,7 @@
 #include "prepared_study.hpp"
 #include "progress_bar.hpp"
 
+#include <rubato/analysis/run_analyses.hpp>
 #include <rubato/core/error.hpp>
 #include <rubato/io/folder_lock.hpp>
 #include <rubato/io/journal_file.hpp>
@@ -11,9 +12,8 @@
 #include <rubato/io/tee_sink.hpp>
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
-#include <rubato/model/doubtful_values.hpp>
 #include <rubato/model/finite_elements/check_finite_elements.hpp>
-#include <rubato/report/results_tables.hpp>
+#include <rubato/report/former_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
 
@@ -25,14 +25,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <optional>
 #include <set>
-#include <thread>
 
 namespace rubato::app {
 namespace {
 
+using analysis::PreparedStudy;
 using analysis::RunReport;
 using analysis::RunStatus;
 
@@ -43,22 +42,16 @@ std::filesystem::path folder_of(const RunOptions& options) {
 }
 
 /// Sweeps that nobody would wait for are more often slips of the hand.
-void require_size(const PreparedStudy& study, const RunOptions& options) {
+void require_points(const PreparedStudy& study, const RunOptions& options) {
   constexpr double most_points = 1e6;
-  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
-    const auto& outline = study.planned[i].outline;
+    const double points = study.planned[i].outline.points;
     const auto& task = study.analyses[i];
-    if (outline.memory > 0.8 * memory)
-      throw InvalidInput(task.where,
-                         fmt::format("analysis \"{}\": a sweep of {:.6g} points keeps {:.3g} GB, and this "
-                                     "machine has {:.3g} GB; observe fewer coordinates, or take fewer points",
-                                     task.name, outline.points, outline.memory / 1e9, memory / 1e9));
-    if (outline.points > most_points && !options.yes)
+    if (points > most_points && !options.yes)
       throw InvalidInput(task.where,
                          fmt::format("analysis \"{}\": the sweep has {:.6g} points, more than a million; say "
                                      "--yes if that is meant",
-                                     task.name, outline.points));
+                                     task.name, points));
   }
 }
 
@@ -81,12 +74,13 @@ double bytes_replaced(const PreparedStudy& study, const std::filesystem::path& f
 /// One journal an analysis that can resume, none for the others.
 using Journals = std::vector<std::unique_ptr<io::JournalFile>>;
 
-Journals open_journals(const PreparedStudy& study, const RunOptions& options, const std::filesystem::path& folder) {
+Journals open_journals(const PreparedStudy& study, const io::SourceFiles& files, const RunOptions& options,
+                       const std::filesystem::path& folder) {
   Journals journals(study.analyses.size());
   for (std::size_t i = 0; i < journals.size(); ++i) {
     const auto& task = study.analyses[i];
     if (study.planned[i].outline.points == 0.0) continue;
-    const auto fingerprint = io::fingerprint_of(study.description, study.files, study.overrides, task.name);
+    const auto fingerprint = io::fingerprint_of(*study.description, files, study.overrides, task.name);
     journals[i] = std::make_unique<io::JournalFile>(folder / (task.name + ".resume"), fingerprint, options.resume);
   }
   return journals;
@@ -113,132 +107,44 @@ void tell_what_begins_anew(const PreparedStudy& study, const Journals& journals)
   tell_of(sweeps, "no interrupted run left points of it");
 }
 
-/// Runs the analyses of a study, several at a time; each writes tables of its own, so that the results do not depend on
-/// how many. What goes wrong with one is in its report, and those that have not begun are left.
-class Runner {
- public:
-  Runner(const PreparedStudy& study, const RunOptions& options, results::Sink& sink, const Journals& journals,
-         FolderWatch& watch)
-      : study_(study),
-        options_(options),
-        sink_(sink),
-        journals_(journals),
-        watch_(watch),
-        stop_(stop_on_interrupt()),
-        reports_(study.analyses.size()) {}
+/// What is said of an analysis that has ended.
+void tell_of(const model::AnalysisDescription& task, const std::string& file, const RunReport& report, bool quiet,
+             bool can_resume) {
+  if (!quiet)
+    for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
+  for (const std::string& warning : report.warnings)
+    tell(fmt::format("{}: warning: analysis \"{}\": {}", file, task.name, warning));
+  if (report.status != RunStatus::done)
+    tell(fmt::format("{}: analysis \"{}\" {}: {}{}", file, task.name,
+                     report.status == RunStatus::failed ? "failed" : "stopped", report.message,
+                     can_resume ? "; the same command with --resume goes on from there" : ""));
+}
 
-  /// The report of each analysis; none where it has not begun.
-  const std::vector<std::optional<RunReport>>& run() {
-    const std::size_t jobs =
-        std::min<std::size_t>(static_cast<std::size_t>(std::max(options_.jobs, 1)), reports_.size());
-    if (jobs == 1) {
-      work(*study_.kind, false);
-      return reports_;
-    }
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < jobs; ++i)
-      threads.emplace_back([this, own = study_.kind->for_thread()] { work(own ? *own : *study_.kind, true); });
-    threads.clear();
-    return reports_;
-  }
-
- private:
-  void work(const integrate::SystemKind& kind, bool has_neighbours) {
-    for (std::size_t i = next_++; i < reports_.size() && !is_over_; i = next_++) {
-      reports_[i] = run_one(i, kind, has_neighbours);
-      if (reports_[i]->status == RunStatus::interrupted) is_over_ = true;
-    }
-  }
-
-  RunReport run_one(std::size_t index, const integrate::SystemKind& kind, bool has_neighbours) {
-    const model::AnalysisDescription& task = study_.analyses[index];
-    ProgressBar progress(options_.quiet, has_neighbours);
-    analysis::RunContext context{sink_, progress, stop_, options_.jobs, journals_[index].get()};
-    RunReport report;
-    bool is_refused = false;
-    try {
-      report = analysis::run_analysis(task, study_.planned[index],
-                                      {study_.description, study_.overrides, study_.parameters, kind}, context);
-    } catch (const std::bad_alloc&) {
-      report = {RunStatus::failed, "memory ran out; observe fewer coordinates, or take a smaller model", {}};
-    } catch (const InvalidInput& fault) {
-      report = {RunStatus::failed, fault.where().file.empty() ? fault.message() : fault.what(), {}};
-    } catch (const std::exception& fault) {
-      report = {RunStatus::failed, fault.what(), {}};
-      is_over_ = is_refused = true;  // what cannot be written now cannot be written later
-    }
-    if (!options_.quiet)
-      for (const std::string& finding : report.findings) tell(fmt::format("{}: {}", task.name, finding));
-    for (const std::string& warning : report.warnings)
-      tell(fmt::format("{}: warning: analysis \"{}\": {}", study_.description.file, task.name, warning));
+std::vector<std::optional<RunReport>> run_all(const PreparedStudy& study, const RunOptions& options,
+                                              results::Sink& sink, const Journals& journals, FolderWatch& watch) {
+  analysis::RunSetup setup{sink, stop_on_interrupt(), options.jobs, [&](std::size_t, bool has_neighbours) {
+                             return std::make_unique<ProgressBar>(options.quiet, has_neighbours);
+                           }};
+  setup.journal = [&](std::size_t i) { return journals[i].get(); };
+  setup.tell = [&](std::size_t i, const RunReport& report, bool is_refused) {
     const bool can_resume =
-        (report.status == RunStatus::interrupted || is_refused) && journals_[index] && watch_.loss().empty();
-    if (report.status != RunStatus::done)
-      tell(fmt::format("{}: analysis \"{}\" {}: {}{}", study_.description.file, task.name,
-                       report.status == RunStatus::failed ? "failed" : "stopped", report.message,
-                       can_resume ? "; the same command with --resume goes on from there" : ""));
-    return report;
-  }
-
-  const PreparedStudy& study_;
-  const RunOptions& options_;
-  results::Sink& sink_;
-  const Journals& journals_;
-  FolderWatch& watch_;
-  const std::atomic<bool>& stop_;
-  std::vector<std::optional<RunReport>> reports_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> is_over_{false};
-};
-
-/// Notes in the file what the analyses could not: that a write was refused, that they were not reached. The exit status
-/// is that of the first analysis that was not done.
-int conclude(const PreparedStudy& study, const std::vector<std::optional<RunReport>>& reports, io::NetcdfSink& sink) {
-  int status = exit_done;
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    const std::string& name = study.analyses[i].name;
-    if (!reports[i]) {
-      sink.conclude(name, "interrupted", "not begun", {});
-      continue;
-    }
-    if (reports[i]->status == RunStatus::done) continue;
-    const bool has_failed = reports[i]->status == RunStatus::failed;
-    sink.conclude(name, has_failed ? "failed" : "interrupted", reports[i]->message, {});
-    if (status == exit_done) status = has_failed ? exit_failed : exit_interrupted;
-  }
-  return status;
+        (report.status == RunStatus::interrupted || is_refused) && journals[i] && watch.loss().empty();
+    tell_of(study.analyses[i], study.description->file, report, options.quiet, can_resume);
+  };
+  return analysis::run_analyses(study, setup);
 }
 
-/// The tables that the results file of a folder tells of, as CSV files; none where there is no such file.
-std::vector<std::string> tables_in(const std::filesystem::path& folder) {
-  std::vector<std::string> files;
-  try {
-    const report::ResultsTables results(folder / "results.nc");
-    for (const auto& analysis : results.analyses())
-      for (const auto& table : analysis.tables)
-        files.push_back(analysis.name + (table->name().empty() ? "" : "." + table->name()) + ".csv");
-  } catch (const std::exception&) {  // it is about to be replaced, whatever it is
-  }
-  return files;
+int exit_status_of(RunStatus status) {
+  return status == RunStatus::done ? exit_done : status == RunStatus::failed ? exit_failed : exit_interrupted;
 }
 
-/// Tables of a former run that this one has not written go to a folder of their own, so that the tables, results.nc
-/// and the report are of one run. What Rubato did not write stays where it is.
+/// So that the tables, results.nc and the report are of one run.
 void set_former_aside(const std::vector<std::string>& former, const std::set<std::string>& written,
                       const std::filesystem::path& folder, bool quiet) {
-  const std::filesystem::path aside = folder / "former";
-  std::vector<std::string> moved, left;
-  for (const std::string& file : former) {
-    std::error_code fault;
-    if (written.contains(file)) continue;
-    if (!std::filesystem::exists(folder / file, fault)) continue;
-    std::filesystem::create_directory(aside, fault);
-    if (!fault) std::filesystem::rename(folder / file, aside / file, fault);
-    (fault ? left : moved).push_back(file);
-  }
+  const auto [moved, left] = report::set_former_aside(former, written, folder);
   if (!moved.empty() && !quiet)
-    tell(fmt::format("tables of a former run, which these results do not have, were moved to {}: {}", aside.string(),
-                     fmt::join(moved, ", ")));
+    tell(fmt::format("tables of a former run, which these results do not have, were moved to {}: {}",
+                     (folder / "former").string(), fmt::join(moved, ", ")));
   if (!left.empty())
     tell(fmt::format("warning: {} still holds tables of a former run, which these results do not have: {}",
                      folder.string(), fmt::join(left, ", ")));
@@ -261,13 +167,8 @@ bool write_motion(const std::filesystem::path& folder) {
 /// Values of the model that are hardly meant, and what is doubtful of a finite element model.
 /// @return what a finite element model is, for people
 std::vector<std::string> tell_doubts(const PreparedStudy& study) {
-  std::vector<model::DoubtfulValue> doubts = model::doubtful_values(study.description.model, study.parameters);
-  model::FiniteElementFindings findings;
-  if (const auto& elements = study.description.model.finite_elements) {
-    findings = model::check_finite_elements(*elements);
-    doubts.insert(doubts.end(), findings.doubts.begin(), findings.doubts.end());
-  }
-  for (const auto& [where, message] : doubts)
+  const auto findings = analysis::findings_of(study);
+  for (const auto& [where, message] : findings.doubts)
     tell(fmt::format("{}:{}:{}: warning: {}", where.file, where.line, where.column, message));
   return findings.facts;
 }
@@ -275,10 +176,11 @@ std::vector<std::string> tell_doubts(const PreparedStudy& study) {
 }  // namespace
 
 int run(const RunOptions& options) {
-  const std::unique_ptr<const PreparedStudy> prepared = prepare(options.study);
-  const PreparedStudy& study = *prepared;
+  const CommandStudy command = prepare(options.study);
+  const PreparedStudy& study = *command.prepared;
   (void)tell_doubts(study);
-  require_size(study, options);
+  analysis::require_memory(study);
+  require_points(study, options);
   const std::filesystem::path folder = folder_of(options);
   int status = exit_done;
   std::vector<std::string> former;
@@ -293,12 +195,12 @@ int run(const RunOptions& options) {
       tell("warning: " + lock->warning());
       setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);  // HDF5 would lock its file too, and refuse to write
     }
-    former = tables_in(folder);
+    former = report::tables_in(folder);
     io::require_disk_space(folder, study.expected_bytes() - (options.resume ? bytes_replaced(study, folder) : 0.0));
-    io::NetcdfSink netcdf(folder / "results.nc", {study.description.title, study.description.file,
-                                                  study.description.text, options.command, io::utc_now()});
+    io::NetcdfSink netcdf(folder / "results.nc", {study.description->title, study.description->file,
+                                                  study.description->text, options.command, io::utc_now()});
     for (const auto& analysis : study.analyses) netcdf.expect(analysis.name);
-    const Journals journals = open_journals(study, options, folder);
+    const Journals journals = open_journals(study, command.files, options, folder);
     tell_of_damage(journals, options.quiet);
     if (options.resume && !options.quiet) tell_what_begins_anew(study, journals);
     // Tables replace former ones when results.nc does, so that all are of one run.
@@ -308,11 +210,11 @@ int run(const RunOptions& options) {
       const std::string loss = lock->loss();
       return loss.empty() && !netcdf.is_there() ? "has lost its results.nc" : loss;
     });
-    const auto reports = Runner(study, options, sink, journals, watch).run();
+    const auto reports = run_all(study, options, sink, journals, watch);
     if (const std::string loss = watch.loss(); !loss.empty())
       throw OutputError(fmt::format("{}: the folder {} while the run wrote into it; the run ends here, without results",
                                     folder.string(), loss));
-    status = conclude(study, reports, netcdf);
+    status = exit_status_of(analysis::note_unfinished(study, reports, netcdf));
     netcdf.close();
     csv.close();
     written = csv.written();
@@ -343,12 +245,12 @@ int run(const RunOptions& options) {
 }
 
 int check(const StudyOptions& options) {
-  const std::unique_ptr<const PreparedStudy> prepared = prepare(options);
-  const PreparedStudy& study = *prepared;
+  const CommandStudy command = prepare(options);
+  const PreparedStudy& study = *command.prepared;
   const std::vector<std::string> facts = tell_doubts(study);
-  fmt::print("{}\n  {}\n", study.description.title, study.kind->summary());
+  fmt::print("{}\n  {}\n", study.description->title, study.kind->summary());
   for (const std::string& fact : facts) fmt::print("  [model] {}\n", fact);
-  if (const auto& elements = study.description.model.finite_elements) {
+  if (const auto& elements = study.description->model.finite_elements) {
     constexpr Index first = 6;
     if (const std::string text = model::first_frequencies(*elements, first); !text.empty())
       fmt::print("  [model] {}\n", text);
@@ -357,7 +259,7 @@ int check(const StudyOptions& options) {
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {
     fmt::print("  {}: {}\n", study.analyses[i].name, study.planned[i].outline.summary);
     for (const std::string& warning : study.planned[i].outline.warnings)
-      tell(fmt::format("{}: warning: analysis \"{}\": {}", study.description.file, study.analyses[i].name, warning));
+      tell(fmt::format("{}: warning: analysis \"{}\": {}", study.description->file, study.analyses[i].name, warning));
   }
   return exit_done;
 }

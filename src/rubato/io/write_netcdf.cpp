@@ -3,6 +3,7 @@
 #include <rubato/io/flush_timer.hpp>
 #include <rubato/io/netcdf_file.hpp>
 #include <rubato/io/write_netcdf.hpp>
+#include <rubato/results/variable_names.hpp>
 
 #include <netcdf.h>
 
@@ -27,7 +28,8 @@ class NetcdfWriter final : public results::RowWriter {
     capacity_ = std::clamp<std::size_t>(values_a_batch / std::max<std::size_t>(width_, 1), 1, most_rows_a_batch);
     int rows = 0;
     file_->check(nc_def_dim(group_, layout.row_dimension.c_str(), NC_UNLIMITED, &rows));
-    for (const results::Block& block : layout.blocks) define(block, rows);
+    const std::vector<std::string> names = results::variable_names(layout);
+    for (std::size_t i = 0; i < names.size(); ++i) define(layout.blocks[i], names[i], rows);
     buffer_.reserve(capacity_ * width_);
   }
 
@@ -93,7 +95,7 @@ class NetcdfWriter final : public results::RowWriter {
     return dimension;
   }
 
-  void define(const results::Block& block, int rows) {
+  void define(const results::Block& block, const std::string& name, int rows) {
     const std::size_t width = block.width();
     if (width == 0) return;  // netCDF knows no dimension without length
     const std::size_t chunk_rows = std::clamp<std::size_t>(values_a_chunk / width, 1, capacity_);
@@ -101,10 +103,6 @@ class NetcdfWriter final : public results::RowWriter {
     offset_ += width;
     int dimensions[2] = {rows, variable.has_labels ? labelled_dimension(block) : 0};
     const int rank = variable.has_labels ? 2 : 1;
-    // Sliders and stops both have a force: a name that is taken gets its dimension before it.
-    int known = 0;
-    const bool is_taken = nc_inq_varid(group_, block.variable.c_str(), &known) == NC_NOERR;
-    const std::string name = is_taken ? block.dimension + "_" + block.variable : block.variable;
     file_->check(
         nc_def_var(group_, name.c_str(), variable.has_words ? NC_INT : NC_DOUBLE, rank, dimensions, &variable.id));
     const std::size_t chunk[2] = {chunk_rows, width};
