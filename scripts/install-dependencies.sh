@@ -11,8 +11,9 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 build=(g++ cmake ninja-build python3 libeigen3-dev libfmt-dev libtomlplusplus-dev libnetcdf-dev
-       libsuitesparse-dev libspectra-dev libcli11-dev libtbb-dev)
-tests=(libgtest-dev libgmock-dev python3-jsonschema python3-numpy python3-scipy clang-format chromium chromium-driver)
+       libsuitesparse-dev libspectra-dev libcli11-dev libtbb-dev
+       python3-dev pybind11-dev python3-numpy python3-xarray python3-matplotlib python3-venv python3-setuptools python3-wheel)
+tests=(libgtest-dev libgmock-dev python3-jsonschema python3-netcdf4 python3-pytest python3-scipy clang-format chromium chromium-driver)
 bench=(libbenchmark-dev libboost-dev libsundials-dev)
 
 tidy=(clang-tidy)

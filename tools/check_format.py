@@ -13,7 +13,7 @@ program = next(filter(None, map(shutil.which, ("clang-format-14", "clang-format"
 if not program or " 14." not in subprocess.run([program, "--version"], capture_output=True, text=True).stdout:
     print("clang-format 14 is not installed")
     sys.exit(77)
-sources = [str(path) for folder in ("apps", "benchmarks", "src", "tests", "examples")
+sources = [str(path) for folder in ("apps", "benchmarks", "python", "src", "tests", "examples")
            for path in sorted((root / folder).rglob("*.[hc]pp"))]
 if not sources:
     sys.exit(f"no sources under {root}")

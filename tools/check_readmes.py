@@ -11,7 +11,7 @@ import sys
 most = 12
 root = pathlib.Path(sys.argv[1]).resolve()
 files = {}
-for top in ("apps", "benchmarks", "cmake", "docs", "examples", "scripts", "src", "tests", "tools"):
+for top in ("apps", "benchmarks", "cmake", "docs", "examples", "python", "scripts", "src", "tests", "tools"):
     for folder, folders, names in os.walk(root / top):
         folders[:] = [name for name in folders if name not in ("results", "__pycache__", "node_modules")]
         if names:
