@@ -33,7 +33,8 @@ class BuildWithCMake(build_ext):
         built = folder / "python" / "rubato" / target.name
         if not built.exists():
             sys.exit(f"{built} is not there: {folder} was made for another Python; remove it")
-        shutil.copy(built, target)
+        for file in (built, built.with_name("_parts.pyi")):
+            shutil.copy(file, target.parent)
 
 
 setup(ext_modules=[Extension("rubato._rubato", [])], cmdclass={"build_ext": BuildWithCMake})

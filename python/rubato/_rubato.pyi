@@ -6,6 +6,9 @@ import numpy as np
 
 version: str
 
+def schema() -> str: ...
+def suggestion(name: str, known: Sequence[str]) -> str: ...
+
 Block = Tuple[str, str, str, str, List[str], List[str], np.ndarray]
 Table = Tuple[str, str, Dict[str, str], List[Block]]
 Analysis = Tuple[str, str, str, Dict[str, str], List[Table]]

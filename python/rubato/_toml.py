@@ -131,6 +131,13 @@ def toml_of(study: Mapping) -> Tuple[str, List[Tuple[int, int, str]]]:
     return "\n".join(writer.lines) + "\n", writer.places
 
 
+def table_of(entries: Mapping, path: str, head: str, line: int) -> Tuple[str, List[Tuple[int, int, str]]]:
+    """The same of one more table, whose head (`[[slider]]`) stands on a line."""
+    writer = _Writer()
+    writer.table(head, entries, path)
+    return "\n".join(writer.lines) + "\n", [(at + line - 1, column, key) for at, column, key in writer.places]
+
+
 def key_at(places: List[Tuple[int, int, str]], line: Optional[int], column: Optional[int]) -> Optional[str]:
     """The key of a place in the text; None where there is no place."""
     if line is None:

@@ -11,8 +11,9 @@ from html import escape
 from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, Union
 
 from . import _rubato
+from ._parts import Parts
 from ._progress import Bar
-from ._toml import key_at, toml_of
+from ._toml import key_at, table_of, toml_of
 from .errors import AnalysisError, Interrupted, StudyError, StudyWarning
 from .results import Results
 
@@ -43,14 +44,15 @@ class Check:
         printer.text(str(self))
 
 
-class Study:
+class Study(Parts):
     """A study of a structure or a mechanism.
 
     Parameters
     ----------
     source
         The path of a study file (TOML), or a dictionary as TOML would give it. Numbers and arrays of numpy serve as
-        numbers and lists; a text in a numeric place is a formula of the parameters. SI units.
+        numbers and lists; a text in a numeric place is a formula of the parameters. SI units. Without it the study is
+        empty, to be built part by part: ``study.add_coordinate(name="mass", mass=1.0)``.
     folder
         Where the tables, matrices and meshes lie that a dictionary names; the working folder unless given. A file has its
         own.
@@ -60,78 +62,112 @@ class Study:
     StudyError
         Where it cannot be read or is no study, with the line of the file, or the key of the dictionary.
 
-    The study is read once: later changes of the file, or of the dictionary, change nothing.
+    The study is read once: later changes of the file, or of the dictionary, change nothing. What is added is read when it is
+    first needed.
     """
 
-    def __init__(self, source: Union[str, os.PathLike, Mapping], *, folder: Union[str, os.PathLike, None] = None):
-        self._places: Optional[List[Tuple[int, int, str]]] = None
-        self._results: Optional[Results] = None
-        if isinstance(source, Mapping):
-            text, self._places = toml_of(source)
-            self._read(lambda: _rubato.Study.from_text(text, "study", os.fspath(folder or ".")))
+    def __init__(self, source: Union[str, os.PathLike, Mapping, None] = None, *,
+                 folder: Union[str, os.PathLike, None] = None):
+        if source is None or isinstance(source, Mapping):
+            text, places = toml_of(source or {})
+            self._begin(text if source else "", "study", os.fspath(folder or "."), places, 0)
+            if source:
+                self._ready()
             return
         if folder is not None:
             raise StudyError("a study file has its own folder; `folder` is for dictionaries and texts")
         path = os.fspath(source)
         if isinstance(path, str) and "\n" in path:
             raise StudyError("this is a text, not the path of a study file; call rubato.Study.from_text(text)")
-        self._read(lambda: _rubato.Study.read(path))
+        handle = _rubato.Study.read(path)
+        self._begin(handle.text, handle.file, str(handle.folder), [], handle.text.count("\n") + 1)
+        self._handle = handle
 
     @classmethod
     def from_text(cls, text: str, *, name: str = "study.toml", folder: Union[str, os.PathLike] = ".") -> "Study":
         """A study from the text of a study file. `name` stands for the file in messages; `folder` is where the tables,
         matrices and meshes lie that it names."""
-        return cls._from_parts(text, name, os.fspath(folder), None)
-
-    @classmethod
-    def _from_parts(cls, text, name, folder, places) -> "Study":
-        study = cls.__new__(cls)
-        study._places, study._results = places, None
-        study._read(lambda: _rubato.Study.from_text(text, name, folder))
+        study = cls._from_parts(text, name, os.fspath(folder), [], text.count("\n") + 1)
+        study._ready()
         return study
 
-    def __reduce__(self):
-        return Study._from_parts, (self.text, self._study.file, str(self._study.folder), self._places)
+    @classmethod
+    def _from_parts(cls, *parts: Any) -> "Study":
+        study = cls.__new__(cls)
+        study._begin(*parts)
+        return study
 
-    def _read(self, read: Callable[[], Any]) -> None:
-        try:
-            self._study = read()
-        except StudyError as fault:
-            raise self._at_key(fault) from None
+    def _begin(self, text: str, name: str, folder: str, places: List[Tuple[int, int, str]], own_lines: int) -> None:
+        self._text, self._name, self._folder = text, name, folder
+        self._places = places  # keys of what did not come as text
+        self._own_lines = own_lines  # of the text that somebody wrote; 0: nobody did
+        self._handle: Optional[Any] = None
+        self._results: Optional[Results] = None
+
+    def __reduce__(self):
+        return Study._from_parts, (self._text, self._name, self._folder, self._places, self._own_lines)
+
+    def _ready(self) -> Any:
+        """The study as the library has read it."""
+        if self._handle is None:
+            if not self._text:
+                raise StudyError("the study is empty; add parts to it, such as study.add_coordinate(name=\"mass\", mass=1.0)")
+            try:
+                self._handle = _rubato.Study.from_text(self._text, self._name, self._folder)
+            except StudyError as fault:
+                raise self._at_key(fault) from None
+        return self._handle
+
+    def _append(self, table: str, entries: Mapping, is_list: bool) -> None:
+        name = re.escape(table)
+        top = re.split(r"^\s*\[", self._text, maxsplit=1, flags=re.MULTILINE)[0]
+        head = rf"^\s*\[\[\s*{name}\s*\]\]" if is_list else rf"^\s*\[\s*{name}\s*[\].]"
+        count = len(re.findall(head, self._text, re.MULTILINE))
+        if re.search(rf"^\s*{name}\s*[=.]", top, re.MULTILINE):
+            raise StudyError(f"the study gives \"{table}\" a value in place, to which nothing can be added; write it as "
+                             + (f"[[{table}]]" if is_list else f"[{table}]"), key=table)
+        if count and not is_list:
+            raise StudyError(f"the study has its [{table}] already", key=table)
+        text = self._text if not self._text or self._text.endswith("\n") else self._text + "\n"
+        added, places = table_of(entries, f"{table}[{count}]" if is_list else table,
+                                 f"[[{table}]]" if is_list else f"[{table}]", text.count("\n") + 1)
+        self._text, self._handle = text + added, None
+        self._places = self._places + places
+
+    def _key(self, line: Optional[int], column: Optional[int]) -> Optional[str]:
+        return key_at(self._places, line, column)
 
     def _at_key(self, fault: StudyError) -> StudyError:
-        """Of a study given as a dictionary: with the key instead of a line of a text that nobody wrote."""
-        if self._places is None:
-            return fault
-        return StudyError(fault.message, key=fault.key or key_at(self._places, fault.line, fault.column))
+        """With the key instead of a line of a text that nobody wrote."""
+        key = fault.key or self._key(fault.line, fault.column)
+        return StudyError(fault.message, key=key) if key or not self._own_lines else fault
 
     def _at_key_in_text(self, message: str) -> str:
-        place = re.match(r"study:(\d+):(\d+): ", message)
-        if self._places is None or not place:
-            return message
-        return f"{key_at(self._places, int(place[1]), int(place[2]))}: {message[place.end():]}"
+        place = re.match(r"(?:.*?):(\d+):(\d+): ", message)
+        key = self._key(int(place[1]), int(place[2])) if place else None
+        return f"{key}: {message[place.end():]}" if place and key else message
 
     @property
     def title(self) -> str:
-        return self._study.title
+        return self._ready().title
 
     @property
     def text(self) -> str:
         """The study as TOML, as it is kept with the results; of a dictionary, what it was written as."""
-        return self._study.text
+        return self._text
 
     @property
     def parameters(self) -> Dict[str, float]:
         """The parameters with the values of the study, which :meth:`run` takes as keywords."""
         try:
-            return self._study.parameters()
+            return self._ready().parameters()
         except StudyError as fault:
             raise self._at_key(fault) from None
 
     @property
     def analyses(self) -> List[str]:
         """The names of the analyses."""
-        return self._study.analyses
+        return self._ready().analyses
 
     @property
     def results(self) -> Optional[Results]:
@@ -213,7 +249,7 @@ class Study:
         if isinstance(jobs, bool) or not isinstance(jobs, numbers.Integral) or not 0 <= jobs <= 1024:
             raise StudyError(f"jobs is a whole number from 0 to 1024, not {jobs!r}")
         names = [] if only is None else [only] if isinstance(only, str) else list(only)
-        run = _rubato.Run(self._study, _settings(parameters, values), names, int(jobs), checks_only)
+        run = _rubato.Run(self._ready(), _settings(parameters, values), names, int(jobs), checks_only)
         interrupt: Optional[KeyboardInterrupt] = None
         try:
             while not run.wait(_look):
@@ -237,13 +273,19 @@ class Study:
         """How the run was called, for the provenance of results."""
         words = [f"{name}={value!r}" for name, value in {**(parameters or {}), **values}.items()]
         words += [f"only={only!r}"] if only is not None else []
-        return f"rubato.Study({self._study.file!r}).run({', '.join(words + ([f'jobs={jobs}'] if jobs else []))})"
+        return f"rubato.Study({self._name!r}).run({', '.join(words + ([f'jobs={jobs}'] if jobs else []))})"
 
     def __repr__(self) -> str:
-        return f"<rubato.Study {self.title!r}: {', '.join(self.analyses) or 'no analyses'}>"
+        try:
+            return f"<rubato.Study {self.title!r}: {', '.join(self.analyses) or 'no analyses'}>"
+        except (StudyError, AttributeError):
+            return "<rubato.Study, which cannot run yet>"
 
     def _repr_html_(self) -> str:
-        values = ", ".join(f"{escape(name)} = {value:g}" for name, value in self.parameters.items())
+        try:
+            values = ", ".join(f"{escape(name)} = {value:g}" for name, value in self.parameters.items())
+        except StudyError as fault:
+            return f"a study, which cannot run yet: {escape(str(fault))}"
         return (f"<b>{escape(self.title)}</b><br>analyses: {escape(', '.join(self.analyses)) or 'none'}"
                 + (f"<br>parameters: {values}" if values else ""))
 

@@ -2,6 +2,7 @@
 
 #include <rubato/core/error.hpp>
 #include <rubato/core/version.hpp>
+#include <rubato/io/schema.hpp>
 #include <rubato/results/variable_names.hpp>
 
 #include <pybind11/numpy.h>
@@ -138,6 +139,9 @@ PYBIND11_MODULE(_rubato, module) {
   module.doc() = "The library behind the package rubato. Call that instead.";
   module.attr("version") = version;
   py::register_local_exception_translator(translate);
+  module.def("schema", &io::study_schema);
+  module.def("suggestion",
+             [](const std::string& name, const std::vector<std::string>& known) { return suggestion(name, known); });
 
   py::class_<Study>(module, "Study")
       .def_static("read", &read_study, py::arg("file"), free)

@@ -28,4 +28,4 @@ def test_pip_installs_a_package_that_runs(tmp_path):
                           capture_output=True, text=True).stdout.split()
     assert str(venv) in told[0] and told[1] == "11"
     package = pathlib.Path(told[0]).parent
-    assert (package / "py.typed").exists() and (package / "_rubato.pyi").exists()
+    assert (package / "py.typed").exists() and (package / "_rubato.pyi").exists() and (package / "_parts.pyi").exists()
