@@ -55,7 +55,7 @@ def _lines(values: "xarray.DataArray", along: str) -> Iterator[Tuple[str, "xarra
     for place in range(stacked.sizes["curve"]):
         curve = stacked.isel(curve=place)
         told = []
-        for name in [str(c) for c in curve.coords if c not in ("curve", along) and curve[c].ndim == 0]:
+        for name in [str(c) for c in curve.coords if c not in ("curve", along) and "curve" in stacked[c].dims]:
             at = curve[name].item()
             told.append(f"{name} = {at:g}" if isinstance(at, (int, float)) else str(at))
         yield ", ".join(told), curve
@@ -67,8 +67,9 @@ def _draw(axes: "Axes", values: "xarray.DataArray", along: str, labels: Union[st
 
     if along not in values.dims:
         raise StudyError(f"the rows are not over \"{along}\" alone; select some, or draw with xarray")
-    curves = [(", ".join(filter(None, (label, told))), curve)
-              for label, chosen in _chosen(values, labels) for told, curve in _lines(chosen, along)]
+    chosen = _chosen(values, labels)
+    curves = [(", ".join(filter(None, (label if len(chosen) > 1 else "", told))), curve)
+              for label, of_label in chosen for told, curve in _lines(of_label, along)]
     for place, (told, curve) in enumerate(curves):
         colour = {} if len(curves) <= 10 or "color" in options else {
             "color": colormaps["viridis"](place / (len(curves) - 1))}
@@ -77,6 +78,8 @@ def _draw(axes: "Axes", values: "xarray.DataArray", along: str, labels: Union[st
         step = -(-len(curves) // _most_in_legend)
         handles, names = axes.get_legend_handles_labels()
         axes.legend(handles[::step], names[::step], fontsize="small")
+    if len(chosen) == 1:
+        axes.set_title(chosen[0][0])
     axes.set_xlabel(_label(values[along]))
     axes.grid(True, alpha=0.3)
 
@@ -89,9 +92,9 @@ def frequency_response(data: "xarray.Dataset", labels: Union[str, Sequence[str],
     values = _variable(data, variable)
     _draw(axes, values, "angular_frequency", labels, options)
     if "status" in data and bool((data.status != "converged").any()):
-        at = next(iter(_chosen(values, labels)))[1].where(data.status != "converged")
-        for _, curve in _lines(at, "angular_frequency"):
-            axes.plot(curve.angular_frequency.values, curve.values, "x", color="crimson")
+        for _, at in _chosen(values.where(data.status != "converged"), labels):
+            for _, curve in _lines(at, "angular_frequency"):
+                axes.plot(curve.angular_frequency.values, curve.values, "x", color="crimson")
     axes.set_ylabel(_label(values))
     return axes
 

@@ -27,7 +27,16 @@ def test_a_frequency_response_has_a_line_for_each_swept_value(results):
     assert axes.get_xlabel() == "angular frequency [rad/s]" and axes.get_ylabel() == "amplitude [m]"
     first = axes.lines[0]
     assert (first.get_ydata() == results["frf"].amplitude.sel(N0=0, coordinate="blade2").values).all()
-    assert "N0 = 0" in first.get_label() and "blade2" in first.get_label()
+    assert first.get_label() == "N0 = 0" and axes.get_title() == "blade2"
+
+
+def test_points_that_are_not_converged_are_marked(results):
+    frf = results["frf"].sel(N0=[0, 35]).copy()
+    status = frf.status.values.copy()
+    status[1, 7] = "not_converged"
+    axes = rubato.plot.frequency_response(frf.assign(status=(frf.status.dims, status)), labels=["blade1", "blade2"])
+    marked = [line for line in axes.lines if line.get_marker() == "x"]
+    assert sum(int((line.get_ydata() == line.get_ydata()).sum()) for line in marked) == 2
 
 
 def test_a_damper_curve_marks_its_optimum(results):
