@@ -74,6 +74,24 @@ def test_a_swept_static_state_lies_on_its_grid():
     np.testing.assert_allclose(position, rest.F / rest.k if position.dims == ("F", "k") else (rest.F / rest.k).T, rtol=1e-12)
 
 
+def test_histories_of_a_swept_transient_are_those_of_single_runs():
+    tables = {
+        "parameters": {"k": 4.0, "c": 0.1},
+        "coordinate": [{"name": "a", "mass": 1.0, "position": 0.1}, {"name": "b", "mass": 1.0}],
+        "spring": [{"between": ["a", "ground"], "stiffness": "k"}, {"between": ["a", "b"], "stiffness": 3.0}],
+        "damper": [{"between": ["b", "ground"], "damping": "c"}]}
+    single = {"name": "t", "type": "transient", "step": 0.01, "duration": 1.0}
+    sweep = {"sweep": {"k": [1.0, 2.0, 4.0], "c": [0.1, 0.2]}, "histories": True}
+    results = rubato.Study({**tables, "analysis": [{**single, **sweep}]}).run()
+    histories, study = results["t.histories"], rubato.Study({**tables, "analysis": [single]})
+    assert histories.position.dims == ("k", "c", "time", "coordinate") and histories.sizes["time"] == 101
+    for k in (1.0, 2.0, 4.0):
+        for c in (0.1, 0.2):
+            alone = study.run(k=k, c=c)["t"]
+            assert (histories.position.sel(k=k, c=c).values == alone.position.values).all()
+            assert results["t"].position_max.sel(k=k, c=c, coordinate="b") == alone.position.sel(coordinate="b").max()
+
+
 def test_a_response_there_and_back_keeps_its_directions_apart():
     frf = response({"k": [4.0, 2.0]}, direction="both", start="previous").run()["frf"]
     assert frf.sizes["k"] == 2 and list(frf.direction) == ["up", "down"]
