@@ -23,9 +23,6 @@ void refuse_foreign_parts(const ModelDescription& d) {
   if (d.finite_elements) refuse(d.finite_elements->where, "[model]", "describe the structure by nodes and beams");
   if (!d.coordinates.empty())
     refuse(d.coordinates.front().where, "a [[coordinate]]", "take a [[node]] with a [[mass]]");
-  if (!d.contacts.empty())
-    refuse(d.contacts.front().where, "a [[contact]]",
-           "take a [[stop]] across it that presses on a [[slider]] along it, with normal_load = { law = \"NAME\" }");
   if (d.base_motion) refuse(d.base_motion->where, "[base_motion]", "apply forces");
   if (!std::holds_alternative<std::monostate>(d.damping))
     refuse(where_of(d.damping), "[damping]",
@@ -86,6 +83,7 @@ Mechanism build_mechanism(const ModelDescription& description, const numerics::P
   take_local_laws(assembly);
   take_stops(assembly);
   take_sliders(assembly);
+  take_contacts(assembly);
   for (const ForceDescription& force : description.forces) take_force(assembly, force);
   if (const auto& gravity = description.gravity)
     mechanism.gravity = assembly.point(gravity->acceleration, gravity->where, "[gravity]: acceleration");

@@ -23,27 +23,6 @@ const Lock* stop_called(const Mechanism& mechanism, const std::string& name) {
   return found == locks.end() ? nullptr : &*found;
 }
 
-/// @param title  "a slider", for messages
-void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& title,
-                       const std::string& part) {
-  if (law.name.empty()) throw InvalidInput(law.where, fmt::format("{} needs a name", title));
-  refuse_unfit_name(law.name, law.where);
-  const Mechanism& mechanism = assembly.mechanism;
-  const auto is_called_so = [&](const auto& other) { return other.name == law.name; };
-  if (std::any_of(mechanism.laws.begin(), mechanism.laws.end(), is_called_so) || stop_called(mechanism, law.name))
-    throw InvalidInput(law.where, fmt::format("two {} are called \"{}\"",
-                                              law.kind == slider_table ? "sliders or laws"
-                                              : law.kind == stop_table ? "stops or laws"
-                                                                       : "laws",
-                                              law.name));
-  const auto is_among = [&](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), law.name) != names.end();
-  };
-  if (is_among(assembly.joint_names) || is_among(mechanism.coordinates) || assembly.fixed.count(law.name) > 0)
-    throw InvalidInput(law.where,
-                       fmt::format("{} has the name of a joint or a coordinate; results would mix them up", part));
-}
-
 /// The coordinate that a joint leaves free, with its zero.
 LawCoordinate coordinate_of_joint(const MechanismAssembly& assembly, const LawDescription& law,
                                   const std::string& part) {
@@ -246,6 +225,29 @@ NormalForce normal_of(const MechanismAssembly& assembly, const SliderDescription
 }
 
 }  // namespace
+
+void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& title,
+                       const std::string& part) {
+  if (law.name.empty()) throw InvalidInput(law.where, fmt::format("{} needs a name", title));
+  refuse_unfit_name(law.name, law.where);
+  const Mechanism& mechanism = assembly.mechanism;
+  const auto is_called_so = [&](const auto& other) { return other.name == law.name; };
+  if (std::any_of(mechanism.laws.begin(), mechanism.laws.end(), is_called_so) ||
+      std::any_of(mechanism.contacts.begin(), mechanism.contacts.end(), is_called_so) ||
+      stop_called(mechanism, law.name))
+    throw InvalidInput(law.where, fmt::format("two {} are called \"{}\"",
+                                              law.kind == slider_table ? "sliders or laws"
+                                              : law.kind == stop_table ? "stops or laws"
+                                              : law.kind == "contact"  ? "contacts, sliders or laws"
+                                                                       : "laws",
+                                              law.name));
+  const auto is_among = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), law.name) != names.end();
+  };
+  if (is_among(assembly.joint_names) || is_among(mechanism.coordinates) || assembly.fixed.count(law.name) > 0)
+    throw InvalidInput(law.where,
+                       fmt::format("{} has the name of a joint or a coordinate; results would mix them up", part));
+}
 
 void take_stops(MechanismAssembly& assembly) {
   for (const StopDescription& given : assembly.description.stops) {

@@ -107,6 +107,9 @@ struct ContactDescription {
   std::vector<Quantity> normal_direction;      ///< from the second end to the first, of any length
   std::vector<Quantity> tangential_direction;  ///< in space: the first of two; empty: the axis least along the normal
   Location normal_direction_where, tangential_direction_where;
+  std::vector<Quantity> at, to;  ///< of mechanisms: the point of the first part, and one of the plane [m]
+  Location at_where, to_where;
+  std::optional<Quantity> radius;  ///< of mechanisms: of a disk or sphere about `at` [m]
   std::vector<Shares> tangential;  ///< one or two displacements along the plane
   Shares normal;                   ///< that across it, positive where the ends come nearer
   Location tangential_where, normal_where;

@@ -160,6 +160,15 @@ void Mechanism::add_law(const std::string& name, const std::string& kind, const 
   laws.push_back(std::move(added));
 }
 
+void Mechanism::add_contact(MechanismContact contact) {
+  contact.index = static_cast<Index>(contacts.size());
+  contact.memory = law_memory_size;
+  contact.element = elements.size();
+  law_memory_size += contact.law->memory_size();
+  elements.push_back(make_contact_element(contact));
+  contacts.push_back(std::move(contact));
+}
+
 void Mechanism::add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis,
                                     const TimeLaw& law) {
   elements.push_back(make_following_force(name, point, axis, law));

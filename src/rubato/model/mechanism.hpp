@@ -3,6 +3,7 @@
 #include <rubato/model/beams/beam_forces.hpp>
 #include <rubato/model/bodies/element.hpp>
 #include <rubato/model/joints/bushing.hpp>
+#include <rubato/model/joints/contact_element.hpp>
 #include <rubato/model/joints/joint.hpp>
 #include <rubato/model/joints/joint_friction.hpp>
 #include <rubato/model/joints/law_element.hpp>
@@ -99,7 +100,8 @@ struct Mechanism {
   std::vector<PrescribedMotion> drives;
   std::vector<JointFriction> frictions;  ///< of two that share a limit the first, which leads, comes before the other
   std::vector<MechanismLaw> laws;
-  Index law_memory_size = 0;  ///< of all laws together
+  std::vector<MechanismContact> contacts;
+  Index law_memory_size = 0;  ///< of all laws and contacts together
   std::vector<NodeForce> forces;
   std::vector<TimeLaw> following_laws;  ///< of forces and moments that are elements, for when they are not smooth
   std::vector<numerics::Formula> joint_formulas;  ///< laws of joints that switch with time, for when they do
@@ -153,6 +155,8 @@ struct Mechanism {
   /// @param reaction  what presses on it instead
   void add_law(const std::string& name, const std::string& kind, const LawCoordinate& u, std::shared_ptr<const Law> law,
                const NormalForce& normal = {}, const PressingReaction& reaction = {});
+  /// Adds a contact with the element that makes its forces; its index, memory and element are set.
+  void add_contact(MechanismContact contact);
   /// A force along an axis of a node that turns with it: see make_following_force.
   void add_following_force(const std::string& name, const PlanePoint& point, std::size_t axis, const TimeLaw& law);
   void add_following_force(const std::string& name, const SpacePoint& point, std::size_t axis, const TimeLaw& law);

@@ -70,6 +70,11 @@ JointPlaces take_places(MechanismAssembly& assembly, const JointDescription& joi
 double length_of(const MechanismAssembly& assembly, const JointDescription& joint, const std::string& part,
                  const JointPlaces& places);
 
+/// Throws InvalidInput for a law, slider, stop or contact without a name, or with that of another or of a joint.
+/// @param title  "a slider"   @param part  "slider \"A\"", for messages
+void refuse_taken_name(const MechanismAssembly& assembly, const LawDescription& law, const std::string& title,
+                       const std::string& part);
+
 // Each takes its parts of the description into the assembly, in this order. Throws InvalidInput.
 void take_structure(MechanismAssembly& assembly);
 void take_body(MechanismAssembly& assembly, const BodyDescription& body);
@@ -81,6 +86,7 @@ void take_springs(MechanismAssembly& assembly);
 void take_local_laws(MechanismAssembly& assembly);
 void take_stops(MechanismAssembly& assembly);
 void take_sliders(MechanismAssembly& assembly);
+void take_contacts(MechanismAssembly& assembly);
 void take_force(MechanismAssembly& assembly, const ForceDescription& force);
 
 }  // namespace rubato::model

@@ -51,7 +51,7 @@ class Mechanism final : public ConstrainedSystem {
   bool has_slip_directions() const override;
   bool has_stops() const override;
   bool touches(const State& state) const override;
-  bool has_memory() const override { return model_.law_memory_size > 0; }
+  bool has_memory() const override { return model_.law_memory_size > 0 || !model_.contacts.empty(); }
   std::unique_ptr<ConstrainedEquations> equations() const override;
 
  private:

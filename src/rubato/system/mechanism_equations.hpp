@@ -79,6 +79,12 @@ class MechanismEquations final : public ConstrainedEquations {
   /// leads without a turn [J].
   double stored_by_laws(const State& state);
   void dissipated_by_laws(const State& from, const State& to, Vector& dissipated);
+  /// What each of the contacts dissipates from one state to another, as dissipated_by_laws() [J].
+  void dissipated_by_contacts(const State& from, const State& to, Vector& dissipated);
+  /// Where a contact is, its forces with their slopes, and what it does, where go_to() led.
+  model::BlockPoint contact_point(std::size_t contact) const;
+  model::BlockAnswer contact_answer(std::size_t contact) const;
+  model::Law::Contact contact_branch(std::size_t contact) const;
   /// Force and displacement of a law where go_to() led [N] and [m], or [N m] and [rad].
   double law_force(std::size_t law) const;
   double law_displacement(std::size_t law) const;
@@ -147,8 +153,12 @@ class MechanismEquations final : public ConstrainedEquations {
   void add_force_of(model::Element::Role role, Vector& out);
   void add_force_of(std::size_t element, Vector& out);
   void add_laws_of_time(Vector& out);
+  /// A state, for laws and contacts; its velocities are overwritten by the next one. Leaves the equations where they
+  /// are.
+  model::Motion motion_at(const State& state, model::Side side);
   /// What law j sees at a state. Leaves the equations where they are.
   model::LawPoint law_point(std::size_t j, const State& state, model::Side side);
+  model::BlockPoint contact_point(std::size_t j, const State& state, model::Side side);
 
   const Mechanism& mechanism_;
   std::vector<std::unique_ptr<model::Element>> elements_;
@@ -167,10 +177,11 @@ class MechanismEquations final : public ConstrainedEquations {
   std::vector<double> negligible_, negligible_rate_;  // of each friction
   Vector excess_;  // of the reactions that friction follows, over the multipliers [c]
   model::Motion motion_;
-  std::vector<model::LawPoint> step_start_;  // of the laws
-  std::vector<double> start_memory_;         // of all laws there
-  std::vector<double> tried_memory_;         // of all laws where the step is tried to end
-  std::vector<double> other_velocity_;       // after a zero, of a state to which the equations do not go
+  std::vector<model::LawPoint> step_start_;       // of the laws
+  std::vector<model::BlockPoint> contact_start_;  // of the contacts
+  std::vector<double> start_memory_;              // of all laws and contacts there
+  std::vector<double> tried_memory_;              // of all of them where the step is tried to end
+  std::vector<double> other_velocity_;            // after a zero, of a state to which the equations do not go
 };
 
 }  // namespace rubato::system

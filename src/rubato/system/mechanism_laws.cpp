@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <variant>
 
-// The laws of a mechanism that have a memory.
+// The laws and contacts of a mechanism that have a memory.
 namespace rubato::system {
 
-model::LawPoint MechanismEquations::law_point(std::size_t j, const State& state, model::Side side) {
+model::Motion MechanismEquations::motion_at(const State& state, model::Side side) {
   std::copy(state.v.data(), state.v.data() + state.v.size(), other_velocity_.data() + 1);
   model::Motion there;
   there.t = state.t;
@@ -15,18 +15,29 @@ model::LawPoint MechanismEquations::law_point(std::size_t j, const State& state,
   there.v = other_velocity_.data() + 1;
   there.phase = state.phase.data();
   there.laws.memory = state.memory.data();
+  return there;
+}
+
+model::LawPoint MechanismEquations::law_point(std::size_t j, const State& state, model::Side side) {
+  model::Motion there = motion_at(state, side);
   if (!pressed_by_reactions_.empty()) take_reactions(state, there, other_reactions_);
   return mechanism_.model().laws[j].point(there);
 }
 
+model::BlockPoint MechanismEquations::contact_point(std::size_t j, const State& state, model::Side side) {
+  return mechanism_.model().contacts[j].point(motion_at(state, side));
+}
+
 void MechanismEquations::begin_step(const State& from) {
   for (std::size_t j = 0; j < step_start_.size(); ++j) step_start_[j] = law_point(j, from, model::Side::right);
+  for (std::size_t j = 0; j < contact_start_.size(); ++j)
+    contact_start_[j] = contact_point(j, from, model::Side::right);
   std::copy(from.memory.data(), from.memory.data() + from.memory.size(), start_memory_.data());
 }
 
 void MechanismEquations::go_to_end(const State& to, model::Side side) {
   go_to(to, side);
-  motion_.laws = {step_start_.data(), start_memory_.data(), tried_memory_.data()};
+  motion_.laws = {step_start_.data(), start_memory_.data(), tried_memory_.data(), contact_start_.data()};
 }
 
 // What presses on a law comes before it: its memory is there already.
@@ -37,6 +48,11 @@ void MechanismEquations::move_laws(State& to) {
     law.law->advance(step_start_[j], start_memory_.data() + law.memory, law_point(j, to, model::Side::left),
                      to.memory.data() + law.memory);
   }
+  for (std::size_t j = 0; j < contact_start_.size(); ++j) {
+    const model::MechanismContact& contact = mechanism_.model().contacts[j];
+    contact.law->advance(contact_start_[j], start_memory_.data() + contact.memory,
+                         contact_point(j, to, model::Side::left), to.memory.data() + contact.memory);
+  }
 }
 
 double MechanismEquations::stored_by_laws(const State& state) {
@@ -45,7 +61,34 @@ double MechanismEquations::stored_by_laws(const State& state) {
     const model::MechanismLaw& law = mechanism_.model().laws[j];
     sum += law.law->stored_energy(law_point(j, state, model::Side::right).u, state.memory.data() + law.memory);
   }
+  for (std::size_t j = 0; j < contact_start_.size(); ++j) {
+    const model::MechanismContact& contact = mechanism_.model().contacts[j];
+    sum +=
+        contact.law->stored_energy(contact_point(j, state, model::Side::right).u, state.memory.data() + contact.memory);
+  }
   return sum;
+}
+
+void MechanismEquations::dissipated_by_contacts(const State& from, const State& to, Vector& dissipated) {
+  for (std::size_t j = 0; j < contact_start_.size(); ++j) {
+    const model::MechanismContact& contact = mechanism_.model().contacts[j];
+    dissipated[static_cast<Index>(j)] =
+        contact.law->dissipated(contact_point(j, from, model::Side::right), from.memory.data() + contact.memory,
+                                contact_point(j, to, model::Side::left), to.memory.data() + contact.memory);
+  }
+}
+
+model::BlockPoint MechanismEquations::contact_point(std::size_t j) const {
+  return mechanism_.model().contacts[j].point(motion_);
+}
+
+model::BlockAnswer MechanismEquations::contact_answer(std::size_t j) const {
+  return mechanism_.model().contacts[j].answer(motion_);
+}
+
+model::Law::Contact MechanismEquations::contact_branch(std::size_t j) const {
+  const model::MechanismContact& contact = mechanism_.model().contacts[j];
+  return contact.law->contact(contact.point(motion_), motion_.laws.memory + contact.memory);
 }
 
 void MechanismEquations::dissipated_by_laws(const State& from, const State& to, Vector& dissipated) {

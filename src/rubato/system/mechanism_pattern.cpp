@@ -54,6 +54,7 @@ MechanismEquations::MechanismEquations(const Mechanism& mechanism) : mechanism_(
   velocity_.assign(static_cast<std::size_t>(mechanism.size()) + 1, 0.0);
   acceleration_ = other_velocity_ = velocity_;
   step_start_.resize(model.laws.size());
+  contact_start_.resize(model.contacts.size());
   start_memory_.assign(static_cast<std::size_t>(model.law_memory_size), 0.0);
   tried_memory_ = start_memory_;
   analyse();

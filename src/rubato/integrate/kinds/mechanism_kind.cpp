@@ -27,6 +27,18 @@ const model::MechanismLaw* slipping_under_reaction(system::MechanismEquations& e
   return nullptr;
 }
 
+/// A contact at its limit: its tangent has no symmetry, and another one where it comes back; null: there is none.
+const model::MechanismContact* slipping_contact(system::MechanismEquations& equations, const system::State& state) {
+  equations.go_to(state, model::Side::right);
+  for (const model::MechanismContact& contact : equations.mechanism().model().contacts) {
+    const model::BlockAnswer answer = equations.contact_answer(static_cast<std::size_t>(contact.index));
+    const Index normal = contact.law->size() - 1;
+    for (Index i = 0; i < normal; ++i)
+      if (answer.by_u[i][normal] != 0.0) return &contact;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::string MechanismKind::summary() const {
@@ -58,6 +70,7 @@ std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
                          ? NonlinearPart::Family::pressed_slider
                          : NonlinearPart::Family::law,
                      law.kind, law.name, law.depends_on_time(), false, model::why_no_steady_response(*law.law)});
+  for (const auto& contact : model.contacts) parts.push_back({NonlinearPart::Family::contact, "contact", contact.name});
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
   for (const auto& lock : model.locks)
@@ -103,7 +116,7 @@ Equilibrium MechanismKind::find_equilibrium(const system::State& start, std::spa
   // Signs of pivots say nothing where loads have no potential, and the matrix is not symmetric.
   constexpr Index most = 600;
   if (found.is_found && !equations.matrix().is_symmetric() && mechanism_.size() <= most &&
-      !slipping_under_reaction(equations, result.state))
+      !slipping_under_reaction(equations, result.state) && !slipping_contact(equations, result.state))
     result.is_stable = modes_about(equations, result.state, 1).is_stable;
   result.iterations = found.iterations;
   result.load_steps = found.load_steps;
@@ -176,6 +189,11 @@ FreeMotions MechanismKind::free_motions(const system::State& state, Index /*limi
         fmt::format("the {} \"{}\" is at the limit that a reaction sets, which small motions change: "
                     "modes do not take that; give it a normal_load in numbers",
                     law->kind, law->name));
+  if (const model::MechanismContact* contact = slipping_contact(equations, state))
+    throw InvalidInput(
+        fmt::format("the contact \"{}\" is at its limit of friction, from which it may slip on or come back: modes of "
+                    "mechanisms do not take that; give it a larger friction_coefficient, or none",
+                    contact->name));
   return modes_about(equations, state, count);
 }
 

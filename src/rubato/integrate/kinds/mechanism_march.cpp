@@ -134,10 +134,10 @@ class MechanismMarch final : public StepMarch {
         equations_(mechanism),
         stepper_(integrate::make_stepper(plan.method, equations_, newton_of(plan), plan.allow_unstable)),
         estimator_(make_mechanism_estimator(plan, *plan.automatic, equations_)),
-        timeline_(equations_, resolution * plan.duration, plan.automatic->plan.locate_sliders),
+        timeline_(equations_, resolution * plan.duration, plan.automatic->plan.locate_sliders, !has_equal_steps(plan)),
         balance_(equations_),
         watch_(plan.start, equations_),
-        law_events_(equations_, plan.start, timeline_.law_guards()),
+        law_events_(equations_, plan.start, timeline_.law_guards(), timeline_.contact_guards()),
         listeners_(watch_, law_events_),
         state_(plan.start) {
     if (!has_equal_steps(plan)) return;  // with steps that change it is carried over by the march
@@ -151,7 +151,8 @@ class MechanismMarch final : public StepMarch {
     parts.push_back(std::make_unique<MechanismEnergy>(balance_, equations_, timeline_));
     auto of_stops = std::make_unique<MechanismStopEnergy>(mechanism_);
     if (of_stops->has_stops()) parts.push_back(std::move(of_stops));
-    if (!mechanism_.model().laws.empty()) parts.push_back(std::make_unique<MechanismLawEnergy>(equations_));
+    auto of_laws = std::make_unique<MechanismLawEnergy>(equations_);
+    if (of_laws->has_laws()) parts.push_back(std::move(of_laws));
     return parts;
   }
   void show(MarchVisitor& visitor) override { visitor.mechanism(equations_); }

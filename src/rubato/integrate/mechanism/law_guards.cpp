@@ -183,6 +183,73 @@ Crossing LawGuards::first_crossing(const system::State& from, const system::Stat
   return first;
 }
 
+GuardValue LawGuards::Pressed::at(double share) const {
+  const CubicPath::Place now = depth.at(share);
+  if (now.rate >= 0.0 || delay == 0.0) return {now.u, now.rate};
+  return {now.u + delay * now.rate, now.rate + delay * now.acceleration};
+}
+
+LawGuards::Pressed LawGuards::pressed(const model::MechanismContact& contact) const {
+  const model::ContactNumber& across = contact.numbers.back();
+  const double gap = contact.law->clearance();
+  const CubicPath depth{to_->t - from_->t, across.value(start_.q) - gap, across.rate(start_),
+                        across.value(end_.q) - gap, across.rate(end_)};
+  return {depth, contact.law->closed_damping() / contact.law->limit_stiffness(contact.law->size() - 1, true)};
+}
+
+double LawGuards::side(const Pressed& pressed) const {
+  const GuardValue begin = pressed.at(0.0);
+  const bool is_at_zero = std::abs(begin.value) <= 2.0 * resolution_ * std::abs(begin.rate);
+  return (is_at_zero ? begin.rate : begin.value) > 0.0 ? 1.0 : -1.0;
+}
+
+GuardValue LawGuards::until_change(const Pressed& pressed, double sign, double share) const {
+  const GuardValue now = pressed.at(share);
+  if (sign > 0.0) return now;
+  return {resolution_ * std::abs(now.rate) - now.value, -now.rate};
+}
+
+Crossing LawGuards::first_touch(const system::State& from, const system::State& to, double least) {
+  follow(from, to);
+  Crossing first;
+  first.share = HUGE_VAL;
+  for (const model::MechanismContact& contact : mechanism_.contacts) {
+    const Pressed path = pressed(contact);
+    const double sign = side(path);
+    if (!(until_change(path, sign, 1.0).value < 0.0)) continue;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (low + high);
+      (until_change(path, sign, middle).value > 0.0 ? low : high) = middle;
+    }
+    if (high >= least && high < first.share) first = {contact.index, high};
+  }
+  return first;
+}
+
+GuardValue LawGuards::touch(Index contact, const system::State& from, const system::State& to) {
+  follow(from, to);
+  const Pressed path = pressed(mechanism_.contacts[static_cast<std::size_t>(contact)]);
+  return until_change(path, side(path), 1.0);
+}
+
+bool LawGuards::hits_a_dashpot(const system::State& from, const system::State& to) {
+  follow(from, to);
+  for (const model::MechanismContact& contact : mechanism_.contacts) {
+    if (contact.law->closed_damping() == 0.0) continue;
+    const Pressed path = pressed(contact);
+    const GuardValue end = path.at(1.0);
+    if (side(path) < 0.0 && end.value >= 0.0 && end.value <= 4.0 * resolution_ * end.rate) return true;
+  }
+  return false;
+}
+
+bool LawGuards::stood_at_change(Index contact, const system::State& from, const system::State& to) {
+  follow(from, to);
+  const GuardValue begin = pressed(mechanism_.contacts[static_cast<std::size_t>(contact)]).at(0.0);
+  return std::abs(begin.value) <= 2.0 * resolution_ * std::abs(begin.rate);
+}
+
 model::Law::Contact LawGuards::contact(Index law, const system::State& before, const system::State& after,
                                        bool at_end) {
   follow(before, after);

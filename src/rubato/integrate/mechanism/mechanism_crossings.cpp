@@ -68,10 +68,14 @@ Crossing MechanismTimeline::first_crossing(const system::State& from, const syst
     }
     if (crossing.share <= 1.0 && (first.guard < 0 || crossing.share < first.share)) first = crossing;
   }
-  if (!watches_laws_) return first;
-  const Crossing of_law = law_guards_.first_crossing(from, to, least);
-  if (of_law.guard < 0 || (first.guard >= 0 && first.share <= of_law.share)) return first;
-  return {static_cast<Index>(transitions_.size()) + of_law.guard, of_law.share};
+  const auto take = [&](const Crossing& other, std::size_t before) {
+    if (other.guard < 0 || (first.guard >= 0 && first.share <= other.share)) return;
+    first = {static_cast<Index>(before) + other.guard, other.share};
+  };
+  if (watches_laws_) take(law_guards_.first_crossing(from, to, least), transitions_.size());
+  if (watches_contacts_)
+    take(law_guards_.first_touch(from, to, least), transitions_.size() + mechanism_.model().laws.size());
+  return first;
 }
 
 }  // namespace rubato::integrate

@@ -31,11 +31,13 @@ MechanismTimeline::MechanismTimeline(std::unique_ptr<system::MechanismEquations>
   own_ = std::move(own);
 }
 
-MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws)
+MechanismTimeline::MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws,
+                                     bool watches_contacts)
     : equations_(equations),
       mechanism_(equations.mechanism()),
       resolution_(resolution),
       watches_laws_(watches_laws),
+      watches_contacts_(watches_contacts),
       law_guards_(mechanism_.model(), mechanism_.size(), resolution),
       loads_(loads_of(mechanism_.model())),
       left_(mechanism_.size()),
@@ -228,7 +230,11 @@ GuardValue MechanismTimeline::guard_at(std::size_t i, const system::State& state
 
 GuardValue MechanismTimeline::guard(Index guard, const system::State& from, const system::State& to) {
   const auto i = static_cast<std::size_t>(guard);
-  if (i >= transitions_.size()) return law_guards_.guard(guard - static_cast<Index>(transitions_.size()), from, to);
+  if (i >= transitions_.size()) {
+    const auto law = guard - static_cast<Index>(transitions_.size());
+    const auto laws = static_cast<Index>(mechanism_.model().laws.size());
+    return law < laws ? law_guards_.guard(law, from, to) : law_guards_.touch(law - laws, from, to);
+  }
   forget_balances();
   GuardValue value = guard_at(i, to, to.stuck_at);
   if (!has_rate(i, from)) value.rate = (value.value - guard_at(i, from, to.stuck_at).value) / (to.t - from.t);
@@ -238,7 +244,8 @@ GuardValue MechanismTimeline::guard(Index guard, const system::State& from, cons
 Passage MechanismTimeline::pass(const system::State& before, system::State& state, double shift) {
   const std::vector<int> old = state.rubbing;
   const Rubbing rubbing = rubbing_after(before, state);
-  bool jumps = rubbing.has_changed, has_impact = false;
+  bool jumps = rubbing.has_changed || (watches_contacts_ && law_guards_.hits_a_dashpot(before, state));
+  bool has_impact = false;
   for (std::size_t i = 0; i < row_.size(); ++i) {
     if (!is_watched(i, before) || state.phase[i] != before.phase[i]) continue;  // an impact before may have opened it
     GuardValue now = guard(static_cast<Index>(i), before, state);

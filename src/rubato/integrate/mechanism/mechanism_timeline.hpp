@@ -22,7 +22,7 @@ struct LockEvent {
 };
 
 /// The timeline of a mechanism: rows of tables of loads and drives, its locks and the friction of its joints: guard i
-/// watches lock i, and after the locks come the frictions, then the laws, where they are watched.
+/// watches lock i, and after the locks come the frictions, then the laws and the contacts, where they are watched.
 ///
 ///   open                      sign (at - s)                  the coordinate reaches the lock
 ///   at a stop with stiffness  sign (stiffness (s - at) + damping s')   its force would pull
@@ -34,6 +34,7 @@ struct LockEvent {
 ///   at limit, held by others  nothing: the others are watched
 ///   held by drives that stand a drive that stood when it was left out moves
 ///   law                       Law::guard(): it goes on by another formula
+///   contact                   its ends meet or part
 ///
 /// A lock without stiffness that engages projects the velocities with M, where stops only press: those that stand and
 /// would pull let go. The state goes on with the acceleration and
@@ -44,8 +45,10 @@ class MechanismTimeline final : public Timeline {
   /// @param resolution  [s]
   MechanismTimeline(const system::Mechanism& mechanism, double resolution);
   /// @param equations  lent; wherever they are left is well
-  /// @param watches_laws  whether steps end where laws change as well
-  MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws = false);
+  /// @param watches_laws      whether steps end where laws change as well
+  /// @param watches_contacts  whether they end where the ends of contacts meet and part
+  MechanismTimeline(system::MechanismEquations& equations, double resolution, bool watches_laws = false,
+                    bool watches_contacts = false);
 
   std::vector<double> breakpoints(double from, double to) const override;
   bool jumps_at(double t) override;
@@ -61,6 +64,8 @@ class MechanismTimeline final : public Timeline {
   const std::vector<LockEvent>& events() const { return events_; }
   /// Of the laws; null where steps do not end there.
   LawGuards* law_guards() { return watches_laws_ ? &law_guards_ : nullptr; }
+  /// Of the contacts, likewise.
+  LawGuards* contact_guards() { return watches_contacts_ ? &law_guards_ : nullptr; }
   /// The guard whose transitions had no end, for which pass() failed: a hundred within a thousandth of the run,
   /// between which its coordinate stayed where it was, to 1e-9 of a radian or of the model's size. -1: none.
   Index chattering() const { return chattering_; }
@@ -126,7 +131,7 @@ class MechanismTimeline final : public Timeline {
   system::MechanismEquations& equations_;
   const system::Mechanism& mechanism_;
   double resolution_;
-  bool watches_laws_;
+  bool watches_laws_, watches_contacts_;
   LawGuards law_guards_;
   system::Loads loads_;
   Vector left_, right_;

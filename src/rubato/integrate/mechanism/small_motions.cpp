@@ -68,6 +68,11 @@ void take_law(const LawAtRest& one, SmallMotions& motions) {
 
 void take_laws(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
                SmallMotions& motions) {
+  if (const auto& contacts = mechanism.model().contacts; !contacts.empty())
+    throw InvalidInput(
+        fmt::format("the contact \"{}\" is not carried by small motions about an equilibrium yet; run a "
+                    "transient, or take a [[stop]] on a coordinate and a [[slider]]",
+                    contacts.front().name));
   const Matrix of_stiffness = eps * left.terms, of_damping = 8.0 * eps * left.damping.cwiseAbs();
   for (const model::MechanismLaw& law : mechanism.model().laws) {
     const double u = std::visit([&](const auto& of) { return of.value(rest.q.data()); }, law.u);

@@ -5,6 +5,7 @@
 
 namespace rubato::model {
 
+struct BlockPoint;
 struct LawPoint;
 
 /// What the laws of a mechanism know of what has been.
@@ -12,6 +13,7 @@ struct LawHistory {
   const LawPoint* from = nullptr;  ///< of each: where the step starts in which the motion is; null: it stands there
   const double* memory = nullptr;  ///< of all, at that start
   double* next = nullptr;          ///< of all: room for that where the motion is, in a step
+  const BlockPoint* block_from = nullptr;  ///< as `from`, of each contact
 };
 
 /// Where a mechanism is, as its elements and joints read it. Nothing is owned.

@@ -141,6 +141,21 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
   visit.quantities("tangential_direction", contact.tangential_direction, {3, 3},
                    {.says = "in space, the first of two along the plane", .unless = "the axis least along the normal"});
   visit.where_given(contact.tangential_direction_where, "tangential_direction");
+  visit.quantities("at", contact.at, {2, 3},
+                   {.unit = "m",
+                    .says = "with bodies and joints: the point of the first part, in the configuration given",
+                    .unless = "its node, of a body its centre of mass"});
+  visit.where_given(contact.at_where, "at");
+  visit.quantities("to", contact.to, {2, 3},
+                   {.unit = "m",
+                    .says = "with bodies and joints: a point of the plane of the second part, in the configuration "
+                            "given, instead of the gap"});
+  visit.where_given(contact.to_where, "to");
+  visit.quantity("radius", contact.radius,
+                 {.unit = "m",
+                  .says = "with bodies and joints: of a disk (in space a sphere, without friction) about `at`",
+                  .unless = "a point",
+                  .range = Range::positive});
   visit.one_or_two_by_name(
       "tangential", contact.tangential,
       {.says = "instead of between: u along the plane as coordinates times weights, { x1 = 1.0 }, or a list of two"});
@@ -169,6 +184,11 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
   visit.exactly_one_of({"between", "normal"});
   visit.requires_beside("sliding_velocity", "friction_coefficient");
   visit.excludes("gap", "normal_load");
+  visit.excludes("to", "gap");
+  visit.excludes("to", "normal_load");
+  visit.requires_beside("at", "between");
+  visit.requires_beside("to", "between");
+  visit.requires_beside("radius", "between");
   visit.requires_beside("between", "normal_direction");
   visit.requires_beside("normal_direction", "between");
   visit.requires_beside("tangential_direction", "between");
@@ -178,10 +198,12 @@ void fields(auto& visit, Like<ContactDescription> auto& contact) {
   visit.check([&](auto& reader) {
     const bool is_of_nodes = !contact.between[0].empty();
     if (is_of_nodes) reader.refuse_beside("between", {"tangential", "normal"});
-    if (!contact.normal.empty()) reader.refuse_beside("normal", {"normal_direction", "tangential_direction"});
+    if (!contact.normal.empty())
+      reader.refuse_beside("normal", {"normal_direction", "tangential_direction", "at", "to", "radius"});
     if (!is_of_nodes && contact.normal.empty()) reader.refuse_to_lack("between");
     if (is_of_nodes && contact.normal_direction.empty()) reader.refuse_to_lack("normal_direction");
     if (contact.gap && contact.normal_load) reader.refuse_beside("gap", {"normal_load"});
+    if (!contact.to.empty()) reader.refuse_beside("to", {"gap", "normal_load"});
     if (contact.tangential_stiffness && !contact.friction_coefficient) reader.refuse_to_lack("friction_coefficient");
     if (contact.friction_coefficient && !contact.tangential_stiffness) reader.refuse_to_lack("tangential_stiffness");
     if (!is_of_nodes && contact.friction_coefficient && contact.tangential.empty()) reader.refuse_to_lack("tangential");

@@ -38,43 +38,49 @@ std::vector<std::string> BlockColumns::names_of(const std::vector<Index>& blocks
   return names;
 }
 
+void add_rubbing_blocks(const std::vector<std::string>& contacts, Index directions, bool is_rotation,
+                        TableLayout& layout) {
+  if (contacts.empty()) return;
+  const std::string dimension = fmt::format("{}contact_of_{}_direction{}", is_rotation ? "rotational_" : "", directions,
+                                            directions > 1 ? "s" : "");
+  for (Index i = 0; i < directions; ++i) {
+    const std::string place = directions > 1 ? fmt::format("_{}", i + 1) : "";
+    if (is_rotation) {
+      layout.blocks.push_back({"tangential_moment" + place, "N m",
+                               "friction moment of a contact; -moment acts along its u", dimension, contacts});
+      layout.blocks.push_back(
+          {"slip_angle" + place, "rad", "where the friction spring ends, u - moment/kT", dimension, contacts});
+    } else {
+      layout.blocks.push_back({"tangential_force" + place, "N", "friction force of a contact; -force acts along its u",
+                               dimension, contacts});
+      layout.blocks.push_back(
+          {"slip" + place, "m", "where the friction spring ends, u - force/kT", dimension, contacts});
+    }
+  }
+}
+
+void add_pressing_blocks(const std::vector<std::string>& contacts, const std::string& dimension, bool is_rotation,
+                         TableLayout& layout) {
+  if (contacts.empty()) return;
+  layout.blocks.push_back({is_rotation ? "normal_moment" : "normal_force", is_rotation ? "N m" : "N",
+                           "what presses the ends of a contact together", dimension, contacts});
+  layout.blocks.push_back({is_rotation ? "gap_angle" : "gap", is_rotation ? "rad" : "m",
+                           "clearance of a contact, negative while pressed", dimension, contacts});
+}
+
 void BlockColumns::add(TableLayout& layout) const {
   if (all_.empty()) return;
   for (Index directions = 1; directions < model::largest_block; ++directions)
-    for (const Kind& kind : rubbing_[directions]) add_rubbing(directions, kind, layout);
+    for (const Kind& kind : rubbing_[directions])
+      add_rubbing_blocks(names_of(kind.blocks), directions, kind.is_rotation, layout);
   for (const Kind& kind : pressing_) {
-    if (kind.blocks.empty()) continue;
-    const std::vector<std::string> names = names_of(kind.blocks);
-    const char* dimension = names.size() == all_.size() ? "contact"
-                            : kind.is_rotation          ? "rotational_contact"
-                                                        : "pressing_contact";
-    layout.blocks.push_back({kind.is_rotation ? "normal_moment" : "normal_force", kind.is_rotation ? "N m" : "N",
-                             "what presses the ends of a contact together", dimension, names});
-    layout.blocks.push_back({kind.is_rotation ? "gap_angle" : "gap", kind.is_rotation ? "rad" : "m",
-                             "clearance of a contact, negative while pressed", dimension, names});
+    const char* dimension = kind.blocks.size() == all_.size() ? "contact"
+                            : kind.is_rotation                ? "rotational_contact"
+                                                              : "pressing_contact";
+    add_pressing_blocks(names_of(kind.blocks), dimension, kind.is_rotation, layout);
   }
   if (in_motion_)
     layout.blocks.push_back({"dissipated", "J", "dissipated by a contact since the start", "contact", names_of(all_)});
-}
-
-void BlockColumns::add_rubbing(Index directions, const Kind& kind, TableLayout& layout) const {
-  if (kind.blocks.empty()) return;
-  const std::vector<std::string> names = names_of(kind.blocks);
-  const std::string dimension = fmt::format("{}contact_of_{}_direction{}", kind.is_rotation ? "rotational_" : "",
-                                            directions, directions > 1 ? "s" : "");
-  for (Index i = 0; i < directions; ++i) {
-    const std::string place = directions > 1 ? fmt::format("_{}", i + 1) : "";
-    if (kind.is_rotation) {
-      layout.blocks.push_back({"tangential_moment" + place, "N m",
-                               "friction moment of a contact; -moment acts along its u", dimension, names});
-      layout.blocks.push_back(
-          {"slip_angle" + place, "rad", "where the friction spring ends, u - moment/kT", dimension, names});
-    } else {
-      layout.blocks.push_back(
-          {"tangential_force" + place, "N", "friction force of a contact; -force acts along its u", dimension, names});
-      layout.blocks.push_back({"slip" + place, "m", "where the friction spring ends, u - force/kT", dimension, names});
-    }
-  }
 }
 
 void BlockColumns::add(const ColumnNames& names, std::vector<Block>& blocks) const {

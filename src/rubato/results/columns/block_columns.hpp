@@ -10,6 +10,15 @@
 
 namespace rubato::results {
 
+/// The blocks along the plane of contacts that rub in so many directions: `tangential_force` and `slip`, of rotations
+/// `tangential_moment` and `slip_angle`, with _1 and _2 of two directions.
+void add_rubbing_blocks(const std::vector<std::string>& contacts, Index directions, bool is_rotation,
+                        TableLayout& layout);
+
+/// The blocks across it: `normal_force` and `gap`, of rotations `normal_moment` and `gap_angle`.
+void add_pressing_blocks(const std::vector<std::string>& contacts, const std::string& dimension, bool is_rotation,
+                         TableLayout& layout);
+
 /// Columns of contacts, laws of several numbers: forces and slips along their plane (with _1 and _2 where there are two
 /// directions), the normal force, the gap and, in a motion, what they dissipated. Where all that u joins are rotations
 /// the first are moments and angles, and so are the others where d joins rotations only.
@@ -33,7 +42,6 @@ class BlockColumns final : public ColumnGroup {
     std::vector<Index> blocks;
   };
   static Kind& kind_of(std::array<Kind, 2>& kinds, bool is_rotation);
-  void add_rubbing(Index directions, const Kind& kind, TableLayout& layout) const;
   std::vector<std::string> names_of(const std::vector<Index>& blocks) const;
   Index directions_of(Index block) const;
 

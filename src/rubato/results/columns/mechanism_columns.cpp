@@ -5,6 +5,7 @@
 #include <rubato/results/columns/joint_laws.hpp>
 #include <rubato/results/columns/joint_reactions.hpp>
 #include <rubato/results/columns/mechanism_columns.hpp>
+#include <rubato/results/columns/mechanism_contact_columns.hpp>
 #include <rubato/results/columns/mechanism_law_columns.hpp>
 #include <rubato/results/columns/mechanism_stop_columns.hpp>
 
@@ -22,6 +23,7 @@ ColumnGroups columns_of_motion(system::MechanismEquations& equations, const std:
   groups.push_back(std::make_unique<BushingForces>(mechanism));
   groups.push_back(std::make_unique<MechanismStopColumns>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, true));
+  if (!mechanism.model().contacts.empty()) groups.push_back(std::make_unique<MechanismContactColumns>(equations, true));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, ""));
   return groups;
 }
@@ -38,6 +40,8 @@ ColumnGroups columns_of_equilibrium(system::MechanismEquations& equations, const
   groups.push_back(std::make_unique<BushingForces>(mechanism));
   groups.push_back(std::make_unique<MechanismStopColumns>(mechanism));
   if (!mechanism.model().laws.empty()) groups.push_back(std::make_unique<MechanismLawColumns>(equations, false));
+  if (!mechanism.model().contacts.empty())
+    groups.push_back(std::make_unique<MechanismContactColumns>(equations, false));
   groups.push_back(std::make_unique<BeamSectionForces>(mechanism, section_forces, title));
   return groups;
 }
