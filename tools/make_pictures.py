@@ -54,6 +54,7 @@ PICTURES = {
     "geared-pair": {"angle": (ROTATIONS, 1, {"Lines": ["azimuth"]})},
     "deployable-panel": {"positions": [0.0, 0.6, 1.07, 1.5, 1.84, 4.5], "angles": (ROTATIONS, 1, {"Lines": ["wall", "first", "second"]}),
                          "energy": "Energy ledger"},
+    "cam-follower": {"lift": ("Travel of the joints that slide", 1, {})},
     "hatch": {"positions": [0.0, 0.2, 0.4, 0.6], "angle": (ROTATIONS, 1, {"Lines": ["hinge"]}), "energy": "Energy ledger",
               "mode": "A mode of the mechanism"},
     "door-on-two-hinges": {"angle": (ROTATIONS, 1, {"Lines": ["upper hinge"]}),
