@@ -13,6 +13,7 @@
 #include <rubato/io/write_csv.hpp>
 #include <rubato/io/write_netcdf.hpp>
 #include <rubato/model/finite_elements/check_finite_elements.hpp>
+#include <rubato/model/finite_elements/reduction.hpp>
 #include <rubato/report/former_tables.hpp>
 #include <rubato/report/write_report.hpp>
 #include <rubato/report/write_vtk.hpp>
@@ -254,6 +255,8 @@ int check(const StudyOptions& options) {
     constexpr Index first = 6;
     if (const std::string text = model::first_frequencies(*elements, first); !text.empty())
       fmt::print("  [model] {}\n", text);
+    if (elements->reduction)
+      for (const std::string& fact : model::facts_of(*elements->reduction)) fmt::print("  [reduction] {}\n", fact);
   }
   for (const auto& [name, value] : study.parameters) fmt::print("  {} = {}\n", name, value);
   for (std::size_t i = 0; i < study.analyses.size(); ++i) {

@@ -1,6 +1,7 @@
 #include <rubato/analysis/prepared_study.hpp>
 #include <rubato/integrate/kinds/assemble_kind.hpp>
 #include <rubato/model/finite_elements/check_finite_elements.hpp>
+#include <rubato/model/finite_elements/reduction.hpp>
 
 #include <fmt/format.h>
 
@@ -81,6 +82,9 @@ ModelFindings findings_of(const PreparedStudy& study) {
     model::FiniteElementFindings found = model::check_finite_elements(*elements);
     findings.doubts.insert(findings.doubts.end(), found.doubts.begin(), found.doubts.end());
     findings.facts = std::move(found.facts);
+    if (elements->reduction)
+      if (const std::string doubt = model::doubt_of(*elements->reduction); !doubt.empty())
+        findings.doubts.push_back({elements->reduction->where, doubt});
   }
   return findings;
 }

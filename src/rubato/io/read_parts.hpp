@@ -24,6 +24,12 @@ void read_mesh(const model::BeamFileDescription& beams, const StudyFolder& folde
 void read_mesh(const model::FiniteElementFileDescription& files, const StudyFolder& folder,
                std::shared_ptr<const model::FiniteElements>& to);
 
+/// [reduction], for the model before it. Throws InvalidInput where there is none.
+void read_mesh(const model::ReductionDescription& reduction, const StudyFolder& folder,
+               std::shared_ptr<const model::FiniteElements>& to);
+/// Lets what analyses observe stay in the reduced model.
+void keep_observed(model::StudyDescription& study);
+
 /// [[analysis]]
 std::vector<model::AnalysisDescription> read_analyses(TomlReader& root, const std::string& key,
                                                       const StudyFolder& folder);

@@ -171,6 +171,7 @@ model::StudyDescription read_study_text(const std::string& text, const std::stri
   ReadingVisitor(root, folder).read(study);
   if (!root.has("title")) study.title = std::filesystem::path(name).stem().string();
   name_by_number(study);
+  keep_observed(study);
   return study;
 }
 

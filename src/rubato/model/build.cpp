@@ -1,6 +1,7 @@
 #include <rubato/model/build_parts.hpp>
 #include <rubato/model/build_structure.hpp>
 #include <rubato/model/finite_elements/build_finite_elements.hpp>
+#include <rubato/model/finite_elements/reduce_model.hpp>
 #include <rubato/model/load_laws.hpp>
 #include <rubato/model/model.hpp>
 
@@ -55,6 +56,7 @@ class Builder {
     take_prescribed();
     if (description_.gravity) take_gravity(*description_.gravity);
     if (description_.base_motion) take_base_motion(*description_.base_motion);
+    reduce_finite_elements();
     return std::move(model_);
   }
 
@@ -140,6 +142,19 @@ class Builder {
     places_.doubt(built.doubtful, built.doubt);
     model_.structure = std::move(built.structure);
     model_.matrices = std::move(built.matrices);
+  }
+
+  /// Last, when it is known what names which degrees of freedom.
+  void reduce_finite_elements() {
+    const auto* elements = description_.finite_elements.get();
+    if (!elements || !elements->reduction || elements->reduction->method == ReductionMethod::none) return;
+    reduce(model_, *elements, *elements->reduction, first_of_nodes_);
+    const auto* modal = std::get_if<ModalDampingRatios>(&model_.damping);
+    if (modal && (modal->modes > model_.size() ||
+                  (modal->ratios.size() > 1 && static_cast<Index>(modal->ratios.size()) > model_.size())))
+      throw InvalidInput(
+          where_of(description_.damping),
+          fmt::format("[damping] is of more modes than the {} of the reduced model; damp fewer", model_.size()));
   }
 
   void take_matrices(const MatricesDescription& matrices) {

@@ -2,6 +2,7 @@
 
 #include <rubato/core/error.hpp>
 #include <rubato/model/fields/key.hpp>
+#include <rubato/model/finite_elements/reduction.hpp>
 
 #include <string>
 
@@ -53,6 +54,47 @@ void fields(auto& visit, Like<FiniteElementFileDescription> auto& model) {
   visit.text("damping_name", model.damping.matrix,
              {.says = "which matrix of a DMIG or OP4 file", .unless = "the one that begins with B"});
   visit.where(model.damping.matrix_where, "damping_name");
+}
+
+void fields(auto& visit, Like<ReductionDescription> auto& reduction) {
+  constexpr long most_modes = 100000;
+  visit.where(reduction.where);
+  visit.word("method", reduction.method,
+             {{"craig_bampton", ReductionMethod::craig_bampton},
+              {"rubin", ReductionMethod::rubin},
+              {"none", ReductionMethod::none}},
+             {.says = "modes with the interface held, or free modes, each beside the statics of the interface; or all "
+                      "degrees of freedom",
+              .unless = "craig_bampton"});
+  visit.whole("modes", reduction.modes, {0, most_modes, "from 0 to 100000"}, {.says = "how many are kept"});
+  visit.where(reduction.modes_where, "modes");
+  visit.quantity("error", reduction.error,
+                 {.says = "of the frequencies wanted, over the frequency: so many modes are kept that estimates are "
+                          "not larger; a number",
+                  .unless = "1e-4 where `modes` is not given",
+                  .range = Range::positive});
+  visit.whole(
+      "frequencies", reduction.frequencies, 6, {1, 1000, "from 1 to 1000"},
+      {.says = "which the error is of: the lowest so many, without sliders and with stuck ones", .unless = "6"});
+  visit.names("keep", reduction.keep, &reduction.keep_where, {},
+              {.says = "nodes, node sets and degrees of freedom that stay as they are, besides those that parts of the "
+                       "model and `observe` name"});
+  visit.excludes("modes", "error");
+  visit.check([&](auto& reader) {
+    if (reduction.modes && reduction.error)
+      throw InvalidInput(reduction.error->where, reader.what() +
+                                                     ": modes and error both say how many modes are kept; "
+                                                     "give one of them");
+    if (reduction.modes && !(*reduction.modes >= 0 && *reduction.modes <= most_modes))
+      throw InvalidInput(reduction.modes_where,
+                         reader.what() + ": modes must be from 0 to 100000, got " + std::to_string(*reduction.modes));
+    if (reduction.error && !reduction.error->expression.empty())
+      throw InvalidInput(
+          reduction.error->where,
+          reader.what() + ": error takes a number: the size of the model must not change with parameters");
+    if (reduction.error && !(reduction.error->value > 0.0 && reduction.error->value < 1.0))
+      throw InvalidInput(reduction.error->where, reader.what() + ": error must lie between 0 and 1");
+  });
 }
 
 }  // namespace rubato::model

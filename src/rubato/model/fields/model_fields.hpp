@@ -15,6 +15,9 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.table("matrices", model.matrices, {.says = "full matrices instead of coordinates, springs and dampers"});
   visit.template rows<FiniteElementFileDescription>("model", model.finite_elements,
                                                     "a finite element model from the files of another program");
+  visit.template rows<ReductionDescription>("reduction", model.finite_elements,
+                                            "what is made of [model]: the degrees of freedom that the study names, and "
+                                            "a few modes of the rest");
   visit.tables("spring", model.springs, "a linear spring between two coordinates, or one and the ground");
   visit.tables("damper", model.dampers, "a dashpot between two coordinates, or one and the ground");
   visit.table("damping", model.damping, {.says = "added to the dashpots; not beside a damping matrix"});
@@ -48,6 +51,7 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
                "mechanism");
   visit.excludes("coordinate", "matrices");
   visit.excludes("model", "matrices");
+  visit.requires_beside("reduction", "model");
   visit.some_of({"coordinate", "matrices", "model", "node", "nodes", "body"});
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -125,6 +126,8 @@ enum class Freedom : char {
 };
 inline bool is_held(Freedom freedom) { return freedom == Freedom::held || freedom == Freedom::held_in_files; }
 
+struct ReductionDescription;
+
 /// A finite element model whose parts belong together: all matrices have the same rows.
 struct FiniteElements {
   FiniteElementMatrix stiffness, mass;
@@ -137,7 +140,8 @@ struct FiniteElements {
   std::vector<std::array<Freedom, 6>> freedoms;  ///< of each direction of a node [p]
   Matrix mass_of_held;  ///< what a unit motion of what a large diagonal holds along x, y, z costs each row [n x 3] [kg]
   std::optional<Mesh> mesh;
-  std::vector<std::string> notes;  ///< what was concluded from the files, for people
+  std::vector<std::string> notes;                         ///< what was concluded from the files, for people
+  std::shared_ptr<const ReductionDescription> reduction;  ///< null: none
   Location where;
 };
 
