@@ -201,6 +201,16 @@ TEST(ContactOfAMechanism, LetsADiskRollOrSkidDownASlope) {
   }
 }
 
+TEST(ContactOfAMechanism, CountsTheWayOfADiskFromWhereItIs) {
+  std::string turned = disk_on_a_slope(0.2);
+  turned.insert(turned.find("mass ="), "angle = 0.7\n");
+  const MechanismStudy ran(turned + run_for(0.5, "{ tolerance = 1e-7 }"));
+  const MechanismStudy expected(disk_on_a_slope(0.2) + run_for(0.5, "{ tolerance = 1e-7 }"));
+  EXPECT_EQ(ran.at(0, "run", "slip", "tread"), 0.0);
+  EXPECT_NEAR(ran.last("run", "slip", "tread"), expected.last("run", "slip", "tread"), 1e-7);
+  EXPECT_NEAR(ran.last("run", "velocity", "disk.x"), expected.last("run", "velocity", "disk.x"), 1e-7);
+}
+
 /// A box that falls on its corners, by Stoermer and Verlet with the friction springs cut off at mu N: of first order
 /// where they slip.
 std::array<double, 6> tumbled(double dt, double end) {

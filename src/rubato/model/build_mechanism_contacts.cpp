@@ -107,7 +107,8 @@ class ContactOfParts {
       const double angle = mechanism.nodes[static_cast<std::size_t>(node[1])].numbers[2];
       const double c = std::cos(angle), sine = std::sin(angle);
       s.along.direction = {c * axis[0] + sine * axis[1], -sine * axis[0] + c * axis[1]};
-      s.zero = s.value(assembly_.start.data());
+      const double turned = mechanism.nodes[static_cast<std::size_t>(node[0])].numbers[2] - angle;
+      s.zero = s.value(assembly_.start.data()) - radius * turned;
       number.s = s;
     } else {
       SpaceCoordinate s;
