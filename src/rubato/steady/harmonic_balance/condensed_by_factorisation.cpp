@@ -64,7 +64,10 @@ class DenseFactorisation final : public CondensedStructure::Route {
     for (double& s : scale_) s = s > 0.0 ? 1.0 / s : 1.0;
     z = scale_.asDiagonal() * z * scale_.asDiagonal();
     factor_.compute(z);
-    condition_ = factor_.rcond();
+    // The estimate of the condition overlooks a pivot that is zero to the last digit.
+    const auto& factors = factor_.matrixLU();
+    const bool has_pivots = factors.allFinite() && (factors.diagonal().array() != 0.0).all();
+    condition_ = has_pivots ? factor_.rcond() : 0.0;
     is_singular_ = !(condition_ > singular);
     if (!is_singular_) return;
     dynamic_ = z;
