@@ -532,13 +532,9 @@ TEST(ContactOfAMechanism, RefusesResponsesAndModesThatItDoesNotCarry) {
   const std::string swing = "[[force]]\non = \"block.x\"\namplitude = 0.1\nangular_frequency = \"Omega\"\n";
   std::string driven = block_on_four_feet(0.6) + swing;
   driven.insert(driven.find("mu ="), "Omega = 1.0\n");
-  for (const char* solver : {"harmonic_balance", "time_marching", "periodic"})
-    EXPECT_THAT(testing::verdict(driven + fmt::format("[[analysis]]\nname = \"response\"\ntype = "
-                                                      "\"frequency_response\"\nabout = \"static\"\nangular_frequency = "
-                                                      "{{ from = 1.0, to = 2.0, points = 3 }}\nsolver = \"{}\"\n",
-                                                      solver)),
-                HasSubstr("contact"))
-        << solver;
+  EXPECT_THAT(testing::verdict(driven + "[[analysis]]\nname = \"response\"\ntype = \"frequency_response\"\nabout = "
+                                        "\"static\"\nangular_frequency = [1.0]\nsolver = \"periodic\"\n"),
+              HasSubstr("contact"));
   EXPECT_THAT(testing::verdict(block_on_four_feet(0.6) + "[[analysis]]\nname = \"modes\"\ntype = \"modes\"\ncontacts = "
                                                          "[\"open\"]\n"),
               HasSubstr("contacts"));

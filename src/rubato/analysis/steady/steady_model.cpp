@@ -248,11 +248,10 @@ void refuse_beyond_small_motions(const StudyInput& input, const Location& where,
   }
   using Family = integrate::NonlinearPart::Family;
   for (const integrate::NonlinearPart& part : input.kind.nonlinear_parts())
-    if (part.family == Family::pressed_slider || part.family == Family::contact)
+    if (part.family == Family::pressed_slider)
       refuse(where,
              fmt::format("the {} \"{}\" is not carried to small motions of a mechanism yet", part.kind, part.name),
-             part.family == Family::pressed_slider ? "give it a normal_load that is a number, or run a transient"
-                                                   : "run a transient");
+             "give it a normal_load that is a number, or run a transient");
 }
 
 }  // namespace rubato::analysis

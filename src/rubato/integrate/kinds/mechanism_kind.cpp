@@ -70,7 +70,9 @@ std::vector<NonlinearPart> MechanismKind::nonlinear_parts() const {
                          ? NonlinearPart::Family::pressed_slider
                          : NonlinearPart::Family::law,
                      law.kind, law.name, law.depends_on_time(), false, model::why_no_steady_response(*law.law)});
-  for (const auto& contact : model.contacts) parts.push_back({NonlinearPart::Family::contact, "contact", contact.name});
+  for (const auto& contact : model.contacts)
+    parts.push_back({NonlinearPart::Family::contact, "contact", contact.name, false, false,
+                     model::why_no_steady_response(*contact.law)});
   for (const auto& friction : model.frictions)
     parts.push_back({NonlinearPart::Family::joint_friction, "friction", friction.label()});
   for (const auto& lock : model.locks)

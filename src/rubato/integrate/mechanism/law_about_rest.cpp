@@ -9,6 +9,8 @@
 namespace rubato::integrate {
 namespace {
 
+using model::BlockAnswer;
+using model::BlockPoint;
 using model::LawAnswer;
 using model::LawPoint;
 
@@ -102,6 +104,73 @@ class SlopedLawAboutRest final : public LawAboutRest, public model::LawSlopes {
   }
 };
 
+class BlockAboutRest : public model::BlockLaw {
+ public:
+  BlockAboutRest(std::shared_ptr<const model::BlockLaw> law, const BlockPoint& rest, Vector memory)
+      : law_(std::move(law)), rest_(rest), memory_(std::move(memory)), at_rest_(law_->at(rest_, memory_.data())) {}
+
+  Index size() const override { return law_->size(); }
+  Index memory_size() const override { return memory_.size(); }
+  BlockAnswer advance(const BlockPoint& from, const double* memory, const BlockPoint& to, double* next) const override {
+    Memory before(memory_, memory), after(memory_, nullptr);
+    const BlockAnswer answer = law_->advance(at_place(from), before.data(), at_place(to), after.data());
+    after.leave(memory_, next);
+    return beside(answer);
+  }
+  BlockAnswer at(const BlockPoint& point, const double* memory) const override {
+    Memory there(memory_, memory);
+    return beside(law_->at(at_place(point), there.data()));
+  }
+  double stored_energy(const double* u, const double* memory) const override {
+    BlockPoint point;
+    std::copy_n(u, size(), point.u);
+    Memory there(memory_, memory);
+    return law_->stored_energy(at_place(point).u, there.data());
+  }
+  double dissipated(const BlockPoint& from, const double* memory, const BlockPoint& to,
+                    const double* next) const override {
+    Memory before(memory_, memory), after(memory_, next);
+    return law_->dissipated(at_place(from), before.data(), at_place(to), after.data());
+  }
+  double limit_stiffness(Index i, bool is_stuck) const override {
+    const Index normal = size() - 1;
+    if (i < normal) return law_->limit_stiffness(i, is_stuck);
+    return is_stuck || at_rest_.force[normal] > 0.0 ? law_->limit_stiffness(normal, true) : 0.0;
+  }
+  double closed_damping() const override { return law_->closed_damping(); }
+  double clearance() const override { return law_->clearance() - rest_.u[size() - 1]; }
+  double sliding_velocity() const override { return law_->sliding_velocity(); }
+  model::Law::Contact contact(const BlockPoint& point, const double* memory) const override {
+    Memory there(memory_, memory);
+    return law_->contact(at_place(point), there.data());
+  }
+
+ protected:
+  BlockPoint at_place(BlockPoint point) const {
+    for (Index i = 0; i < size(); ++i) point.u[i] += rest_.u[i];
+    return point;
+  }
+  BlockAnswer beside(BlockAnswer answer) const {
+    for (Index i = 0; i < size(); ++i) answer.force[i] -= at_rest_.force[i];
+    return answer;
+  }
+
+  std::shared_ptr<const model::BlockLaw> law_;
+  BlockPoint rest_;
+  Vector memory_;
+  BlockAnswer at_rest_;
+};
+
+/// Of a block that knows the slopes of its steps: they are the same.
+class SlopedBlockAboutRest final : public BlockAboutRest, public model::BlockSlopes {
+ public:
+  using BlockAboutRest::BlockAboutRest;
+  bool slopes(const BlockPoint& from, const double* memory, const BlockPoint& to, Matrix& slopes) const override {
+    Memory before(memory_, memory);
+    return dynamic_cast<const model::BlockSlopes&>(*law_).slopes(at_place(from), before.data(), at_place(to), slopes);
+  }
+};
+
 }  // namespace
 
 std::shared_ptr<const model::Law> law_about_rest(std::shared_ptr<const model::Law> law, double u, const double* memory,
@@ -113,6 +182,15 @@ std::shared_ptr<const model::Law> law_about_rest(std::shared_ptr<const model::La
   if (dynamic_cast<const model::LawSlopes*>(law.get()))
     return std::make_shared<SlopedLawAboutRest>(std::move(law), u, std::move(rest), force);
   return std::make_shared<LawAboutRest>(std::move(law), u, std::move(rest), force);
+}
+
+std::shared_ptr<const model::BlockLaw> law_about_rest(std::shared_ptr<const model::BlockLaw> law,
+                                                      const BlockPoint& rest, const double* memory) {
+  Vector at_rest(law->memory_size());
+  std::copy(memory, memory + at_rest.size(), at_rest.data());
+  if (dynamic_cast<const model::BlockSlopes*>(law.get()))
+    return std::make_shared<SlopedBlockAboutRest>(std::move(law), rest, std::move(at_rest));
+  return std::make_shared<BlockAboutRest>(std::move(law), rest, std::move(at_rest));
 }
 
 }  // namespace rubato::integrate

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rubato/model/laws/block_law.hpp>
 #include <rubato/model/laws/law.hpp>
 
 #include <memory>
@@ -17,5 +18,11 @@ namespace rubato::integrate {
 /// @param normal  what presses on it for good [N]
 std::shared_ptr<const model::Law> law_about_rest(std::shared_ptr<const model::Law> law, double u, const double* memory,
                                                  double normal);
+
+/// The same of a law of several numbers.
+/// @param rest    where it rests, without rates
+/// @param memory  there, [law->memory_size()]
+std::shared_ptr<const model::BlockLaw> law_about_rest(std::shared_ptr<const model::BlockLaw> law,
+                                                      const model::BlockPoint& rest, const double* memory);
 
 }  // namespace rubato::integrate

@@ -33,14 +33,19 @@ Vector share_of(const Coordinate& s, const Vector& q, const Matrix& basis) {
   return share;
 }
 
-/// Takes slope (ds/dz)^T (ds/dz) from a matrix. What the difference leaves of an entry by round-off is nothing: a
-/// motion that laws alone hold must not seem to have a stiffness.
-void take_slope(double slope, const Vector& share, const Matrix& round_off, Matrix& matrix) {
-  const Matrix taken = slope * share * share.transpose();
+/// Takes one from another. What the difference leaves of an entry by round-off is nothing: a motion that laws alone
+/// hold must not seem to have a stiffness.
+/// @param terms  what each entry taken is the sum of
+void take(const Matrix& taken, const Matrix& terms, const Matrix& round_off, Matrix& matrix) {
   matrix -= taken;
   for (Index i = 0; i < matrix.size(); ++i)
-    if (std::abs(matrix.data()[i]) <= round_off.data()[i] + 8.0 * eps * std::abs(taken.data()[i]))
-      matrix.data()[i] = 0.0;
+    if (std::abs(matrix.data()[i]) <= round_off.data()[i] + 8.0 * eps * terms.data()[i]) matrix.data()[i] = 0.0;
+}
+
+/// Takes slope (ds/dz)^T (ds/dz) from a matrix.
+void take_slope(double slope, const Vector& share, const Matrix& round_off, Matrix& matrix) {
+  const Matrix taken = slope * share * share.transpose();
+  take(taken, taken.cwiseAbs(), round_off, matrix);
 }
 
 /// A law that acts by itself: its slopes leave K and C, and what its force makes of the curvature of u stays.
@@ -55,7 +60,6 @@ struct LawAtRest {
 };
 
 void take_law(const LawAtRest& one, SmallMotions& motions) {
-  motions.laws.push_back({one.u, one.law->at({one.u, 0.0, 0.0, model::Side::right, one.normal}, one.memory).force});
   model::LawBetween between;
   between.name = one.name;
   between.kind = one.kind;
@@ -68,11 +72,6 @@ void take_law(const LawAtRest& one, SmallMotions& motions) {
 
 void take_laws(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
                SmallMotions& motions) {
-  if (const auto& contacts = mechanism.model().contacts; !contacts.empty())
-    throw InvalidInput(
-        fmt::format("the contact \"{}\" is not carried by small motions about an equilibrium yet; run a "
-                    "transient, or take a [[stop]] on a coordinate and a [[slider]]",
-                    contacts.front().name));
   const Matrix of_stiffness = eps * left.terms, of_damping = 8.0 * eps * left.damping.cwiseAbs();
   for (const model::MechanismLaw& law : mechanism.model().laws) {
     const double u = std::visit([&](const auto& of) { return of.value(rest.q.data()); }, law.u);
@@ -88,6 +87,41 @@ void take_laws(const system::Mechanism& mechanism, const system::State& rest, Mo
     if (slopes.by_u != 0.0) take_slope(slopes.by_u, share, of_stiffness, left.stiffness);
     if (slopes.by_rate != 0.0) take_slope(slopes.by_rate, share, of_damping, left.damping);
     take_law({law.name, law.kind, law.law, u, share, memory, normal}, motions);
+  }
+}
+
+/// The slopes of a contact at its limit are not symmetric, and leave K as they are.
+void take_contacts(const system::Mechanism& mechanism, const system::State& rest, MotionsLeft& left,
+                   SmallMotions& motions) {
+  const Matrix of_stiffness = eps * left.terms, of_damping = 8.0 * eps * left.damping.cwiseAbs();
+  for (const model::MechanismContact& contact : mechanism.model().contacts) {
+    const auto d = static_cast<Index>(contact.numbers.size());
+    const double* const memory = rest.memory.data() + contact.memory;
+    model::BlockPoint point;
+    model::BlockBetween between;
+    Matrix shares(left.freedoms(), d), stiffness(d, d), damping(d, d);
+    for (Index i = 0; i < d; ++i) {
+      const model::ContactNumber& number = contact.numbers[static_cast<std::size_t>(i)];
+      point.u[i] = number.value(rest.q.data());
+      shares.col(i) = share_of(number, rest.q, left.basis);
+      for (Index z = 0; z < shares.rows(); ++z)
+        if (shares(z, i) != 0.0) between.columns[static_cast<std::size_t>(i)].push_back({z, shares(z, i)});
+    }
+    const model::BlockAnswer answer = contact.law->at(point, memory);
+    for (Index i = 0; i < d; ++i)
+      for (Index j = 0; j < d; ++j) {
+        stiffness(i, j) = answer.by_u[i][j];
+        damping(i, j) = answer.by_rate[i][j];
+      }
+    const Matrix sizes = shares.cwiseAbs();
+    take(shares * stiffness * shares.transpose(), sizes * stiffness.cwiseAbs() * sizes.transpose(), of_stiffness,
+         left.stiffness);
+    take(shares * damping * shares.transpose(), sizes * damping.cwiseAbs() * sizes.transpose(), of_damping,
+         left.damping);
+    between.name = contact.name;
+    between.kind = "contact";
+    between.law = law_about_rest(contact.law, point, memory);
+    motions.parts.blocks.push_back(std::move(between));
   }
 }
 
@@ -191,6 +225,7 @@ SmallMotions small_motions(system::MechanismEquations& equations, const system::
     return motions;
   }
   const Matrix of_rest = Matrix::Constant(r, r, 4.0 * left_over(equations, rest, left.basis));
+  take_contacts(mechanism, rest, left, motions);
   motions.skew = skew_beyond(left.stiffness, 16.0 * eps * left.terms + left.noise + of_rest);
   take_laws(mechanism, rest, left, motions);
   take_locks(mechanism, rest, left, motions);

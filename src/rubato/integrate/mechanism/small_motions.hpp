@@ -17,9 +17,10 @@ namespace rubato::integrate {
 ///
 ///   M z'' + C z' + K z + B f(B^T z) = N^T load,   dq = N z
 ///
-/// with the geometric stiffness of what it carries there in K, and the laws f as they are, beside their rest. A stop
-/// that is a spring is such a law; one that damps too is, while it holds, a spring and a damper, and other locks that
-/// hold are constraints. What it observes are shares of z, from where it rests.
+/// with the geometric stiffness of what it carries there in K, and the laws f as they are, beside their rest, those of
+/// contacts too: open, pressed, stuck, or at the limit of their friction. A stop that is a spring is such a law; one
+/// that damps too is, while it holds, a spring and a damper, and other locks that hold are constraints. What it
+/// observes are shares of z, from where it rests.
 struct SmallMotions {
   /// A lock, and when the motion comes to it or leaves it.
   struct Watched {
@@ -30,16 +31,11 @@ struct SmallMotions {
     bool is_damped_spring = false;  ///< without its damping it would be a law
     Vector share;                   ///< ds/dz [r]
   };
-  /// A law, where it rests.
-  struct Rest {
-    double u = 0.0, force = 0.0;  ///< [m] and [N], or [rad] and [N m]
-  };
 
   system::LocallyNonlinear::Parts parts;  ///< without loads
   Matrix basis;                           ///< N [n x r]
   Matrix shares;  ///< of z in what results call the coordinates: of a rotation in space a rotation vector [n x r]
   Vector place;   ///< these coordinates at rest [n]
-  std::vector<Rest> laws;
   std::vector<Watched> locks;
   /// Stops without stiffness that hold: taken for joints, though they only press.
   std::vector<std::string> rigid_stops;
