@@ -79,8 +79,7 @@ TEST(ContactOfAMechanism, CarriesStaticLoadsAndModesWhileItSticks) {
 }
 
 TEST(ContactOfAMechanism, RefusesWhatItDoesNotCarry) {
-  const std::string transient =
-      "[[analysis]]\nname = \"run\"\ntype = \"transient\"\nduration = 0.1\nstep = 0.01\n";
+  const std::string transient = "[[analysis]]\nname = \"run\"\ntype = \"transient\"\nduration = 0.1\nstep = 0.01\n";
   const std::string body = R"toml(
 [[body]]
 name = "block"

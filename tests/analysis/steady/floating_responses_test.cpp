@@ -2,6 +2,7 @@
 #include "support/prepared_study.hpp"
 
 #include <rubato/analysis/run_study.hpp>
+#include <rubato/analysis/steady/status_counts.hpp>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
