@@ -75,6 +75,22 @@ std::unique_ptr<const PreparedStudy> prepare(std::shared_ptr<const model::StudyD
   }
 }
 
+namespace {
+
+void add_doubts(const model::ReductionDescription& reduction, const PreparedStudy& study,
+                std::vector<model::DoubtfulValue>& doubts) {
+  if (std::string doubt = model::doubt_of(reduction); !doubt.empty()) doubts.push_back({reduction.where, doubt});
+  for (const model::AnalysisDescription& analysis : study.analyses) {
+    const auto* modes = std::get_if<model::ModesDescription>(&analysis.task);
+    if (!modes) continue;
+    const Index count = study.kind->mode_count({"", analysis.where, *modes, study.parameters});
+    if (const std::string doubt = model::modes_beyond_estimates(reduction, count); !doubt.empty())
+      doubts.push_back({analysis.where, fmt::format("analysis \"{}\": {}", analysis.name, doubt)});
+  }
+}
+
+}  // namespace
+
 ModelFindings findings_of(const PreparedStudy& study) {
   ModelFindings findings;
   findings.doubts = model::doubtful_values(study.description->model, study.parameters);
@@ -82,9 +98,7 @@ ModelFindings findings_of(const PreparedStudy& study) {
     model::FiniteElementFindings found = model::check_finite_elements(*elements);
     findings.doubts.insert(findings.doubts.end(), found.doubts.begin(), found.doubts.end());
     findings.facts = std::move(found.facts);
-    if (elements->reduction)
-      if (const std::string doubt = model::doubt_of(*elements->reduction); !doubt.empty())
-        findings.doubts.push_back({elements->reduction->where, doubt});
+    if (elements->reduction) add_doubts(*elements->reduction, study, findings.doubts);
   }
   return findings;
 }

@@ -238,6 +238,7 @@ DamperCurvePlan plan_damper_curve(const std::string& name, const Location& where
                                                          {parameter, "the range of the curve"}};
   for (const std::size_t swept : plan.sweep.places()) given.emplace_back(swept, "the sweep");
   plan.warnings = warn_of_settings(input, given);
+  warn_of_reduction(input, plan.highest, plan.warnings);
   if (std::string told = plan.negative_stiffness.warning(); !told.empty()) plan.warnings.push_back(std::move(told));
   if (plan.about) {
     plan.request = plan.about->request(plan.observed, plan.request);

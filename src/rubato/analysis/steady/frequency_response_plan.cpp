@@ -244,6 +244,7 @@ FrequencyResponsePlan plan_frequency_response(const std::string& name, const Loc
   std::vector<std::pair<std::size_t, std::string>> given{{excitation, "the list of frequencies"}};
   for (const std::size_t place : plan.sweep.places()) given.emplace_back(place, "the sweep");
   plan.warnings = warn_of_settings(input, given);
+  warn_of_reduction(input, plan.frequencies.back(), plan.warnings);
   if (std::string told = plan.negative_stiffness.warning(); !told.empty()) plan.warnings.push_back(std::move(told));
   if (plan.about) {
     plan.request = plan.about->request(plan.observed, plan.request);

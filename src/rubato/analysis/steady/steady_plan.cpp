@@ -1,11 +1,15 @@
 #include <rubato/analysis/steady/steady_model.hpp>
 #include <rubato/analysis/steady/steady_plan.hpp>
+#include <rubato/model/finite_elements/finite_elements.hpp>
+#include <rubato/model/finite_elements/reduction.hpp>
 #include <rubato/model/load_laws.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
+#include <utility>
 
 namespace rubato::analysis {
 namespace {
@@ -94,6 +98,13 @@ ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size
                     [&](const auto& setting) { return setting.first == input.parameters[i].first; }))
       varied.push_back(i);
   return ParameterDependence(input.study, input.parameters, varied);
+}
+
+void warn_of_reduction(const StudyInput& input, double highest, std::vector<std::string>& warnings) {
+  const auto& elements = input.study.model.finite_elements;
+  if (!elements || !elements->reduction) return;
+  std::string told = model::beyond_estimates(*elements->reduction, highest / (2.0 * std::numbers::pi));
+  if (!told.empty()) warnings.push_back(std::move(told));
 }
 
 std::vector<std::string> warn_of_settings(const StudyInput& input,

@@ -36,6 +36,10 @@ std::size_t excitation_parameter(const NamedParameter& wanted, const VariedParam
 /// The dependence where some parameters are given values: those that are varied, and those of --set.
 ParameterDependence dependence_of(const StudyInput& input, std::vector<std::size_t> varied);
 
+/// Adds a warning where a response goes beyond the frequencies that a [reduction] is judged by.
+/// @param highest  [rad/s]
+void warn_of_reduction(const StudyInput& input, double highest, std::vector<std::string>& warnings);
+
 /// A warning for every parameter of --set to which an analysis gives values of its own: what is set does nothing there.
 /// @param varied  places of parameters, and what gives them their values: "its sweep"
 std::vector<std::string> warn_of_settings(const StudyInput& input,

@@ -13,6 +13,13 @@ void tell(const std::vector<FrequencyEstimate>& estimates, const char* limit, st
                                 estimates[i].frequency, estimates[i].error));
 }
 
+/// The report of a model that has become smaller, under its lock; null: there is none.
+const ReductionReport* reduced(const ReductionDescription& description) {
+  if (description.method == ReductionMethod::none || !description.store->report) return nullptr;
+  const ReductionReport& report = *description.store->report;
+  return report.interface + report.modes < report.before && !report.free.empty() ? &report : nullptr;
+}
+
 }  // namespace
 
 double ReductionReport::worst() const {
@@ -60,9 +67,33 @@ std::string doubt_of(const ReductionDescription& description) {
         first =
             fmt::format("{} of {:.6g} Hz, by about {:.1e}", i + 1, (*estimates)[i].frequency, (*estimates)[i].error);
   return fmt::format(
-      "[reduction]: with {} modes some of the first {} frequencies are more than 1 % too high, the first "
+      "[reduction]: with {} mode{} some of the first {} frequencies are more than 1 % too high, the first "
       "number {}; take more modes, or error = 1e-4",
-      report.modes - report.statics, report.free.size(), first);
+      report.modes - report.statics, report.modes - report.statics == 1 ? "" : "s", report.free.size(), first);
+}
+
+std::string beyond_estimates(const ReductionDescription& description, double highest) {
+  const std::lock_guard lock(description.store->mutex);
+  const ReductionReport* const report = reduced(description);
+  if (!report) return "";
+  double judged = report->free.back().frequency;
+  if (!report->stuck.empty()) judged = std::min(judged, report->stuck.back().frequency);
+  if (!(highest > judged)) return "";
+  return fmt::format(
+      "it goes up to {:.6g} Hz, and the errors of [reduction] are estimated up to {:.6g} Hz, the first {} frequencies; "
+      "beyond them the reduced model may be another one: take frequencies = ... of [reduction] larger",
+      highest, judged, report->free.size());
+}
+
+std::string modes_beyond_estimates(const ReductionDescription& description, Index count) {
+  const std::lock_guard lock(description.store->mutex);
+  const ReductionReport* const report = reduced(description);
+  const auto judged = report ? static_cast<Index>(report->free.size()) : count;
+  if (count <= judged) return "";
+  return fmt::format(
+      "it asks for {} modes, and the errors of [reduction] are estimated of the first {}: take frequencies = {} of "
+      "[reduction]",
+      count, judged, count);
 }
 
 }  // namespace rubato::model

@@ -70,5 +70,10 @@ struct ReductionDescription {
 std::vector<std::string> facts_of(const ReductionDescription& description);
 /// What of it is hardly meant: frequencies with a large error; or empty.
 std::string doubt_of(const ReductionDescription& description);
+/// What an analysis asks beyond the frequencies whose errors were estimated: a warning with the remedy; or empty.
+/// @param highest  frequency that it drives or shows [Hz]
+std::string beyond_estimates(const ReductionDescription& description, double highest);
+/// The same of the lowest so many modes.
+std::string modes_beyond_estimates(const ReductionDescription& description, Index count);
 
 }  // namespace rubato::model
