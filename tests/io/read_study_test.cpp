@@ -143,7 +143,8 @@ TEST(KeyError, NamesAnUnknownKeyAndTheNearestKnownOne) {
   EXPECT_EQ(
       verdict_with("title", "titel"),
       "study.toml:1:1: error: the study has no key \"titel\"; did you mean \"title\"? (known: "
-      "title, parameters, coordinate, matrices, model, reduction, spring, damper, damping, slider, stop, bouc_wen, "
+      "title, parameters, coordinate, matrices, model, reduction, cyclic, spring, damper, damping, slider, stop, "
+      "bouc_wen, "
       "cable, dahl, iwan, lugre, nonlinear_spring, smooth_friction, "
       "contact, "
       "force, "
@@ -168,7 +169,8 @@ TEST(KeyError, NamesAnUnknownTable) {
   EXPECT_EQ(
       verdict_with("[[spring]]", "[[sprig]]"),
       "study.toml:14:3: error: the study has no key \"sprig\"; did you mean \"spring\"? (known: "
-      "title, parameters, coordinate, matrices, model, reduction, spring, damper, damping, slider, stop, bouc_wen, "
+      "title, parameters, coordinate, matrices, model, reduction, cyclic, spring, damper, damping, slider, stop, "
+      "bouc_wen, "
       "cable, dahl, iwan, lugre, nonlinear_spring, smooth_friction, "
       "contact, "
       "force, "

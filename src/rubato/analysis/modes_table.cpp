@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -112,16 +113,23 @@ void tell_round_off(const std::string& title, const numerics::DampedModes& found
 }
 
 void write_modes(const std::string& name, const std::vector<std::string>& names, const std::vector<Observed>& observed,
-                 const std::vector<integrate::FreeMotions>& limits, results::Sink& sink) {
+                 const std::vector<integrate::FreeMotions>& limits, results::Sink& sink,
+                 const std::vector<Index>& diameters) {
   const bool is_complex = has_complex(limits);
-  const auto rows = sink.open(layout_of(name, names, observed, is_complex));
+  results::TableLayout layout = layout_of(name, names, observed, is_complex);
+  const std::size_t each = std::max<std::size_t>(diameters.size(), 1);
+  if (!diameters.empty())
+    layout.blocks.insert(
+        layout.blocks.begin() + 1,
+        results::Block{"nodal_diameter", "1", "k: sector j+1 moves as sector j, exp(i k 2 pi/N) times", "", {}});
+  const auto rows = sink.open(layout);
   for (std::size_t limit = 0; limit < limits.size(); ++limit) {
     double number = 0.0;
     for (const auto& mode : limits[limit].found.modes) {
-      std::vector<double> row{static_cast<double>(limit), ++number,
-                              mode.angular_frequency,     mode.angular_frequency / (2.0 * std::numbers::pi),
-                              mode.damping_ratio,         mode.eigenvalue.real(),
-                              mode.eigenvalue.imag()};
+      std::vector<double> row{static_cast<double>(limit / each)};
+      if (!diameters.empty()) row.push_back(static_cast<double>(diameters[limit % each]));
+      row.insert(row.end(), {++number, mode.angular_frequency, mode.angular_frequency / (2.0 * std::numbers::pi),
+                             mode.damping_ratio, mode.eigenvalue.real(), mode.eigenvalue.imag()});
       const Vector real = mode.shape.real(), imaginary = mode.shape.imag();
       for (const auto& one : observed) row.push_back(one.of(real));
       if (is_complex)

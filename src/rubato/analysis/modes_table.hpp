@@ -16,8 +16,10 @@ inline const std::vector<std::string> mode_limits{"free", "stuck"};
 /// 1; its imaginary part where damping makes a mode of any limit complex).
 /// @param names   of the limits
 /// @param limits  the motions of each, in the order of the names
+/// @param diameters  nodal diameters, of each of which every limit has motions, one after the other; none: no disk
 void write_modes(const std::string& name, const std::vector<std::string>& names, const std::vector<Observed>& observed,
-                 const std::vector<integrate::FreeMotions>& limits, results::Sink& sink);
+                 const std::vector<integrate::FreeMotions>& limits, results::Sink& sink,
+                 const std::vector<Index>& diameters = {});
 
 /// Why modes did not converge, and what to do about it.
 std::string cause_of_poor_modes(const numerics::DampedModes& found);

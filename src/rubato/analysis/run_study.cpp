@@ -1,3 +1,4 @@
+#include <rubato/analysis/cyclic_modes.hpp>
 #include <rubato/analysis/law_damping.hpp>
 #include <rubato/analysis/method_study.hpp>
 #include <rubato/analysis/modes.hpp>
@@ -142,6 +143,14 @@ struct Plan {
 
   PlannedAnalysis operator()(const model::ModesDescription& modes) const {
     const integrate::SystemKind& kind = input.kind;
+    if (is_cyclic(input)) {
+      const auto plan =
+          std::make_shared<const CyclicModesPlan>(plan_cyclic_modes(analysis.name, analysis.where, modes, input));
+      AnalysisOutline result{plan->summary, plan->expected_bytes};
+      return {result, [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
+                return run_cyclic_modes(name, *plan, at.kind, context);
+              }};
+    }
     const auto plan = std::make_shared<const ModesPlan>(
         plan_modes(analysis.name, analysis.where, modes, kind, input.parameters, &transients));
     return {outline(*plan, kind), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {
@@ -253,6 +262,7 @@ RunReport stopped() { return {RunStatus::interrupted, "interrupted before it had
 
 PlannedAnalysis plan_analysis(const model::AnalysisDescription& analysis, const StudyInput& input) {
   refuse_ambiguous_state(analysis, input.study.analyses);
+  refuse_without_cyclic_condition(analysis, input);
   if (!swept_of(analysis)) return plan_one(analysis, input);
   const auto plan = std::make_shared<const SamplesPlan>(plan_samples(analysis, input, plan_one));
   return {outline(*plan), [plan, name = analysis.name](const StudyInput& at, RunContext& context) {

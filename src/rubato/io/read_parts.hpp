@@ -27,6 +27,9 @@ void read_mesh(const model::FiniteElementFileDescription& files, const StudyFold
 /// [reduction], for the model before it. Throws InvalidInput where there is none.
 void read_mesh(const model::ReductionDescription& reduction, const StudyFolder& folder,
                std::shared_ptr<const model::FiniteElements>& to);
+/// [cyclic], for the model before it. Throws InvalidInput where there is none.
+void read_mesh(const model::CyclicDescription& cyclic, const StudyFolder& folder,
+               std::shared_ptr<const model::FiniteElements>& to);
 /// Lets what analyses observe stay in the reduced model.
 void keep_observed(model::StudyDescription& study);
 

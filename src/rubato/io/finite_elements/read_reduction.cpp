@@ -21,6 +21,17 @@ void read_mesh(const model::ReductionDescription& reduction, const StudyFolder&,
   to = std::move(reduced);
 }
 
+void read_mesh(const model::CyclicDescription& cyclic, const StudyFolder&,
+               std::shared_ptr<const model::FiniteElements>& to) {
+  if (!to)
+    throw InvalidInput(cyclic.where,
+                       "[cyclic] says of which disk [model] is a sector, and there is none; name the files of a finite "
+                       "element model in [model]");
+  auto sector = std::make_shared<model::FiniteElements>(*to);
+  sector->cyclic = std::make_shared<const model::CyclicDescription>(cyclic);
+  to = std::move(sector);
+}
+
 void keep_observed(model::StudyDescription& study) {
   if (!study.model.finite_elements || !study.model.finite_elements->reduction) return;
   auto reduction = std::make_shared<model::ReductionDescription>(*study.model.finite_elements->reduction);
@@ -33,6 +44,14 @@ void keep_observed(model::StudyDescription& study) {
     }
   };
   for (const auto& analysis : study.analyses) std::visit(take_all, analysis.task);
+  if (const auto& cyclic = study.model.finite_elements->cyclic) {
+    reduction->keep_where.resize(reduction->keep.size(), reduction->where);
+    for (const auto& [set, where] :
+         {std::pair(&cyclic->left, &cyclic->left_where), {&cyclic->right, &cyclic->right_where}}) {
+      reduction->keep.push_back(*set);
+      reduction->keep_where.push_back(*where);
+    }
+  }
   auto elements = std::make_shared<model::FiniteElements>(*study.model.finite_elements);
   elements->reduction = std::move(reduction);
   study.model.finite_elements = std::move(elements);

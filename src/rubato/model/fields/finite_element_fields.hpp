@@ -2,6 +2,7 @@
 
 #include <rubato/core/error.hpp>
 #include <rubato/model/fields/key.hpp>
+#include <rubato/model/finite_elements/cyclic.hpp>
 #include <rubato/model/finite_elements/reduction.hpp>
 
 #include <string>
@@ -54,6 +55,23 @@ void fields(auto& visit, Like<FiniteElementFileDescription> auto& model) {
   visit.text("damping_name", model.damping.matrix,
              {.says = "which matrix of a DMIG or OP4 file", .unless = "the one that begins with B"});
   visit.where(model.damping.matrix_where, "damping_name");
+}
+
+void fields(auto& visit, Like<CyclicDescription> auto& cyclic) {
+  visit.where(cyclic.where);
+  visit.whole("sectors", cyclic.sectors, 0, {2, 10000, "from 2 to 10000"},
+              {.required = true, .says = "N: sector j+1 is sector j turned by 2 pi/N about the axis"});
+  visit.where(cyclic.sectors_where, "sectors");
+  visit.quantities("axis", cyclic.axis, {.least = 3, .most = 3},
+                   {.required = true, .says = "along which the disk turns"});
+  visit.where(cyclic.axis_where, "axis");
+  visit.quantities("origin", cyclic.origin, {.least = 3, .most = 3},
+                   {.unit = "m", .says = "a point of the axis", .unless = "[0, 0, 0]"});
+  visit.where(cyclic.origin_where, "origin");
+  visit.text("left", cyclic.left, {.required = true, .says = "node set of one side, joined to the next sector"});
+  visit.where(cyclic.left_where, "left");
+  visit.text("right", cyclic.right, {.required = true, .says = "node set of the other side"});
+  visit.where(cyclic.right_where, "right");
 }
 
 void fields(auto& visit, Like<ReductionDescription> auto& reduction) {

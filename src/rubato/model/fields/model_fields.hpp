@@ -18,6 +18,7 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.template rows<ReductionDescription>("reduction", model.finite_elements,
                                             "what is made of [model]: the degrees of freedom that the study names, and "
                                             "a few modes of the rest");
+  visit.template rows<CyclicDescription>("cyclic", model.finite_elements, "[model] is one of equal sectors of a disk");
   visit.tables("spring", model.springs, "a linear spring between two coordinates, or one and the ground");
   visit.tables("damper", model.dampers, "a dashpot between two coordinates, or one and the ground");
   visit.table("damping", model.damping, {.says = "added to the dashpots; not beside a damping matrix"});
@@ -52,6 +53,7 @@ void fields(auto& visit, Like<ModelDescription> auto& model) {
   visit.excludes("coordinate", "matrices");
   visit.excludes("model", "matrices");
   visit.requires_beside("reduction", "model");
+  visit.requires_beside("cyclic", "model");
   visit.some_of({"coordinate", "matrices", "model", "node", "nodes", "body"});
 }
 

@@ -127,6 +127,7 @@ enum class Freedom : char {
 inline bool is_held(Freedom freedom) { return freedom == Freedom::held || freedom == Freedom::held_in_files; }
 
 struct ReductionDescription;
+struct CyclicDescription;
 
 /// A finite element model whose parts belong together: all matrices have the same rows.
 struct FiniteElements {
@@ -142,6 +143,7 @@ struct FiniteElements {
   std::optional<Mesh> mesh;
   std::vector<std::string> notes;                         ///< what was concluded from the files, for people
   std::shared_ptr<const ReductionDescription> reduction;  ///< null: none
+  std::shared_ptr<const CyclicDescription> cyclic;        ///< null: it is the whole structure
   Location where;
 };
 
