@@ -385,8 +385,9 @@ struct FrequencyResponseDescription {
   Location direction_where;
   std::optional<std::vector<ObservationDescription>> observe;  ///< all coordinates unless given
   std::vector<Quantity> harmonics;                             ///< orders over the fundamental; the first unless given
-  std::optional<Quantity> tolerance;                           ///< relative [-]
-  std::optional<MethodDescription> method;                     ///< of time marching, as the two below
+  std::optional<Quantity> orders;           ///< of harmonic balance; chosen by the error unless given
+  std::optional<Quantity> tolerance;        ///< relative [-]
+  std::optional<MethodDescription> method;  ///< of time marching, as the two below
   std::optional<Quantity> steps_per_period, max_periods;
   std::optional<WaveformsDescription> waveforms;
   std::optional<Location> about_equilibrium;  ///< of a mechanism: where that was asked for

@@ -26,6 +26,7 @@ std::unique_ptr<SteadySolver> harmonic_balance(const SteadyRoute& route, const L
                                                const SteadyRequest& request) {
   HarmonicBalanceOptions options;
   options.sweep = route.linear;
+  options.orders = route.orders;
   if (route.tolerance > 0.0) options.tolerance = route.tolerance;
   return std::make_unique<HarmonicBalanceSolver>(system, request, options);
 }

@@ -21,6 +21,7 @@ struct SteadyRoute {
   integrate::Method method;   ///< of time marching, as the two below
   long steps_per_period = 0;  ///< 0: chosen by the error
   long max_periods = 0;       ///< 0: the route's own
+  int orders = 0;             ///< of harmonic balance; 0: chosen by the error
   LinearSweep linear = {};    ///< by which way large models find their linear responses
 };
 

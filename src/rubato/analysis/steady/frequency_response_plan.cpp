@@ -3,6 +3,7 @@
 #include <rubato/analysis/steady/frequency_response_tables.hpp>
 #include <rubato/analysis/steady/parametric_excitation.hpp>
 #include <rubato/analysis/steady/steady_plan.hpp>
+#include <rubato/steady/harmonic_balance/harmonic_balance.hpp>
 
 #include <fmt/format.h>
 
@@ -128,6 +129,15 @@ void plan_route(FrequencyResponsePlan& plan, const Description& description, con
       throw InvalidInput(place(description.tolerance->where, where),
                          fmt::format("{}tolerance must lie between 0 and 1, got {}", title, plan.route.tolerance));
   }
+  if (description.orders) {
+    constexpr int most = steady::HarmonicBalanceOptions{}.most_harmonics;
+    const Location& at = place(description.orders->where, where);
+    if (description.route != Description::Route::harmonic_balance)
+      throw InvalidInput(at, title + "\"orders\" goes with solver = \"harmonic_balance\" only");
+    const long orders = whole_number(*description.orders, 1, input.parameters, title + "orders", where);
+    if (orders > most) throw InvalidInput(at, fmt::format("{}orders reach to {}, got {}", title, most, orders));
+    plan.route.orders = static_cast<int>(orders);
+  }
   const auto refuse = [&](const Location& at, const char* key) {
     throw InvalidInput(place(at, where), fmt::format("{}\"{}\" goes with solver = \"time_marching\" only", title, key));
   };
@@ -155,6 +165,11 @@ void plan_request(FrequencyResponsePlan& plan, const Description& description, c
     const long order = whole_number(quantity, 1, input.parameters, title + "harmonics", where);
     if (order > 1000)
       throw InvalidInput(place(quantity.where, where), fmt::format("{}harmonics reach to 1000, got {}", title, order));
+    if (order == 1) plan.shows_first_parts = true;
+    if (plan.route.orders > 0 && order > plan.route.orders)
+      throw InvalidInput(place(quantity.where, where), fmt::format("{}harmonics names order {}, and orders = {} leaves "
+                                                                   "it out",
+                                                                   title, order, plan.route.orders));
     auto& orders = plan.request.harmonics;
     if (std::find(orders.begin(), orders.end(), order) == orders.end()) orders.push_back(static_cast<int>(order));
   }

@@ -34,6 +34,7 @@ struct FrequencyResponsePlan {
   bool has_both_directions = false;
   std::vector<Observed> observed = {};
   steady::SteadyRequest request = {};
+  bool shows_first_parts = false;  ///< the real and the imaginary part of the first harmonic
 
   std::vector<bool> waveform_at = {};  ///< of each frequency
   int waveform_points = 0;             ///< 0: none are kept

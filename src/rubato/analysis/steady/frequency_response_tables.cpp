@@ -107,6 +107,10 @@ std::vector<std::string> reserved_columns() {
           "relative_angle",
           "samples",
           "missing",
+          "first_real",
+          "first_imaginary",
+          "first_angle_real",
+          "first_angle_imaginary",
           "free_amplitude",
           "free_angle_amplitude",
           "free_phase",
@@ -119,7 +123,8 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
     : layout_{name, "", "point", {}, attributes_of(plan, input)},
       sliders_(results::SliderColumns(plan.system(input)).order()),
       has_direction_(plan.has_both_directions),
-      has_fundamental_(plan.has_other_fundamental) {
+      has_fundamental_(plan.has_other_fundamental),
+      shows_first_parts_(plan.shows_first_parts) {
   auto& blocks = layout_.blocks;
   add_parameters(plan, {}, blocks);
   if (has_direction_) blocks.push_back(direction());
@@ -139,6 +144,12 @@ ResponseTable::ResponseTable(const std::string& name, const FrequencyResponsePla
     if (order > 1)
       observe({fmt::format("harmonic{}_amplitude", order), "m", description},
               {fmt::format("harmonic{}_angle_amplitude", order), "rad", description});
+    if (order == 1 && plan.shows_first_parts)
+      for (const char* part : {"real", "imaginary"})
+        observe(
+            {fmt::format("first_{}", part), "m", fmt::format("{} part of X, x contains Re(X exp(i omega t))", part)},
+            {fmt::format("first_angle_{}", part), "rad",
+             fmt::format("{} part of X, x contains Re(X exp(i omega t))", part)});
     add_phases(plan.observed, order == 1 ? "phase" : fmt::format("harmonic{}_phase", order),
                fmt::format("phase of harmonic {}, A cos({} omega t + phase)", order, order), blocks);
   }
@@ -182,6 +193,10 @@ void ResponseTable::add(const RowPlace& place, double fundamental, const steady:
   for (Index k = 0; k < response.harmonics.cols(); ++k) {
     if (k > 0)
       for (Index i = 0; i < response.harmonics.rows(); ++i) rows.push_back(std::abs(response.harmonics(i, k)));
+    if (k == 0 && shows_first_parts_) {
+      append(response.harmonics.col(0).real(), rows);
+      append(response.harmonics.col(0).imag(), rows);
+    }
     for (Index i = 0; i < response.harmonics.rows(); ++i) rows.push_back(phase_of(response.harmonics(i, k)));
   }
   append(response.mean, rows);

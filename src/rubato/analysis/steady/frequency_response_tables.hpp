@@ -45,7 +45,7 @@ class ResponseTable {
   results::TableLayout layout_;
   std::size_t width_ = 0, amplitudes_ = 0;
   std::vector<Index> sliders_, laws_;  ///< in the order of the columns
-  bool has_direction_ = false, has_fundamental_ = false;
+  bool has_direction_ = false, has_fundamental_ = false, shows_first_parts_ = false;
 };
 
 /// Table `linear`: amplitudes and phases of the two linear limits, without sliders and with all of them stuck, for

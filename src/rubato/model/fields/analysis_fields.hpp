@@ -289,7 +289,11 @@ void fields(auto& visit, FrequencyResponseDescription& task) {
   visit.quantities(
       "harmonics", task.harmonics, {},
       {.says =
-           "orders whose amplitude and phase are kept besides the first, up to 1000; harmonic balance reaches to 63"});
+           "orders whose amplitude and phase are kept besides the first, up to 1000; harmonic balance reaches to 127; "
+           "with 1 among them the first is kept by its parts, too (first_real, first_imaginary)"});
+  visit.quantity("orders", task.orders,
+                 {.says = "of harmonic_balance: all orders up to this one, from 1 to 127, whatever their error",
+                  .unless = "chosen by the error"});
   visit.quantity(
       "tolerance", task.tolerance,
       {.unit = "-",

@@ -90,7 +90,7 @@ void HarmonicBalanceSolver::Implementation::forget() {
 // stiffer than it can follow.
 bool HarmonicBalanceSolver::Implementation::can_be_shot(const system::Excitation& excitation, SteadyStart start) {
   const Index n = system.size(), m = stiffness.size();
-  if (n > largest_rigid || m == 0 || has_laws() || start == SteadyStart::previous) return false;
+  if (n > largest_rigid || m == 0 || has_laws() || start == SteadyStart::previous || options.orders > 0) return false;
   if (!fastest) {
     const auto highest = [&](const SparseMatrix& k) {
       const Vector squares = numerics::all_modes(k, system.mass()).eigenvalues;
@@ -122,7 +122,7 @@ system::LocallyNonlinear HarmonicBalanceSolver::Implementation::with_contacts_up
 // which a series cannot, or its contacts stick and slip so sharply that more orders than there are would be needed.
 bool HarmonicBalanceSolver::Implementation::shoot(const system::Excitation& excitation, SteadyStart start,
                                                   SteadyResponse& response) {
-  if (system.size() > largest_rigid || stiffness.size() == 0 || has_laws()) return false;
+  if (system.size() > largest_rigid || stiffness.size() == 0 || has_laws() || options.orders > 0) return false;
   if (!may_walk) may_walk = (numerics::all_modes(system.stiffness(), system.mass()).eigenvalues.array() == 0.0).any();
   const bool may_repeat = can_condense && can_be_shot(excitation, start);
   if (!*may_walk && !may_repeat) return false;
@@ -160,8 +160,9 @@ bool HarmonicBalanceSolver::Implementation::shoot(const system::Excitation& exci
 
 HarmonicBalanceSolver::HarmonicBalanceSolver(const system::LocallyNonlinear& system, SteadyRequest request,
                                              HarmonicBalanceOptions options) {
-  if (!(options.tolerance > 0.0) || !(options.residual_tolerance > 0.0) || !(options.most_harmonics >= 1))
-    throw InvalidInput("harmonic balance needs positive tolerances and at least one harmonic");
+  if (!(options.tolerance > 0.0) || !(options.residual_tolerance > 0.0) || !(options.most_harmonics >= 1) ||
+      options.orders < 0 || options.orders > options.most_harmonics)
+    throw InvalidInput("harmonic balance needs positive tolerances and orders from 1 to most_harmonics");
   implementation_ = std::make_unique<Implementation>(system, std::move(request), options);
 }
 
@@ -221,10 +222,16 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
   for (const system::LoadHarmonic& h : excitation.harmonics) order = std::max(order, h.order);
   for (const int k : request.harmonics)
     if (k <= options.most_harmonics) order = std::max(order, k);
-  const int most = std::max(options.most_harmonics - 1, order - 1) / stride + 1;
+  const bool are_given = options.orders > 0;
+  const int most = std::max((are_given ? options.orders : options.most_harmonics) - 1, order - 1) / stride + 1;
   // The balance of few orders may be none of the motion where contacts open, slip and close.
   const int least = eq.groups().empty() ? 1 : fewest_for_groups;
   int count = std::max((order - 1 + stride - 1) / stride + 1, std::min(std::max(count_wanted, least), most));
+  if (are_given) {
+    // Of groups two balances tell the error.
+    const int least_given = (order - 1 + stride - 1) / stride + 1;
+    count = std::max(least_given, std::min(count, eq.groups().empty() ? most : fewer(most)));
+  }
   const int first_iteration = response.iterations;
   const int most_iterations = effort == Effort::brief     ? most_brief_iterations
                               : effort == Effort::limited ? most_limited_iterations
@@ -278,7 +285,7 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
     // close: two balances tell.
     if (!std::isinf(firmness_used) || !eq.groups().empty()) {
       difference = observed_before.size() > 0 ? change_since(observed_before) : infinity;
-      response.error = std::max(response.error, caution * difference);
+      if (!are_given || difference < infinity) response.error = std::max(response.error, caution * difference);
       if (!is_sampled_anew) observed_before = observed;
     }
     has_solution = has_answer = true;
@@ -286,14 +293,16 @@ bool HarmonicBalanceSolver::Implementation::attempt(const system::Excitation& ex
       response.error = infinity;
       return false;
     }
-    if (!is_sampled_anew && response.error <= options.tolerance) {
+    const bool is_enough = are_given ? count == most : response.error <= options.tolerance;
+    if (!is_sampled_anew && is_enough) {
       // A point that needed few orders lets the next one try fewer.
       firmness = firmness_used;
       const bool is_plenty = response.error < 0.02 * options.tolerance;
-      count_wanted = is_plenty ? std::max(1, 2 * count / 3) : count;
+      count_wanted = is_plenty && !are_given ? std::max(1, 2 * count / 3) : count;
       if (has_samples_to_spare) samples_wanted /= 4;
       // Groups are balanced twice: the next point as often as this one, or with fewer orders both times.
-      if (!eq.groups().empty()) count_wanted = fewer(response.error < 0.25 * options.tolerance ? fewer(count) : count);
+      if (!eq.groups().empty())
+        count_wanted = fewer(!are_given && response.error < 0.25 * options.tolerance ? fewer(count) : count);
       return true;
     }
     if ((count >= most && !is_sampled_anew) || response.iterations - first_iteration > most_iterations) return false;

@@ -13,7 +13,10 @@ struct HarmonicBalanceOptions {
   double tolerance = 1e-3;            ///< wanted relative error of the amplitudes by truncation [-]
   double residual_tolerance = 2e-12;  ///< of the balance, relative to the relative displacements [-]
   int most_harmonics = 127;           ///< highest order that may be balanced
-  LinearSweep sweep = {};             ///< of many points: large structures go by modes in a basis of their answers
+  /// All orders up to this one are balanced, and those of the loads, whatever the error; 0: as many as the error asks
+  /// for. Contacts are taken as stiff as they are.
+  int orders = 0;
+  LinearSweep sweep = {};  ///< of many points: large structures go by modes in a basis of their answers
 };
 
 /// Steady responses as truncated Fourier series (harmonic balance).
@@ -27,6 +30,8 @@ struct HarmonicBalanceOptions {
 ///
 /// Orders are added until the estimated error is below the tolerance. The estimate is what the first orders left out
 /// would do: their own part in the observed coordinates and, through the Jacobian, the change of the orders kept.
+///
+/// Where the orders are given, they are all there is, and the error says what the others would do.
 ///
 /// Contacts that are stiff beside the structure, rigid ones too, are balanced in u + c fc with a compliance c that
 /// bears on the truncation alone (HarmonicBalanceEquations).

@@ -128,14 +128,15 @@ bool HarmonicBalanceSolver::Implementation::newton(const system::Excitation& exc
   auto& eq = equations.front();
   const Vector receptances = slider_receptances();
   const bool all_soft = (stiffness.cwiseProduct(receptances).head(sliders).array() <= soft).all();
-  if (firmness == 0.0) firmness = all_soft ? infinity : first_firmness;
+  const bool is_as_it_is = options.orders > 0;
+  if (firmness == 0.0) firmness = all_soft || is_as_it_is ? infinity : first_firmness;
   for (;; firmness = std::isinf(firmness) ? soft : softer * firmness) {
     const bool is_softened = soften(receptances);
     firmness_used = firmness;
     const int before = response.iterations;
     bool has_converged = solve_from(has_start, has_solution, response.iterations);
     if (has_converged && is_softened && response.iterations - before <= easy) firmness *= firmer;
-    const bool is_last = firmness <= least_firmness || sliders == 0 || effort == Effort::brief ||
+    const bool is_last = firmness <= least_firmness || sliders == 0 || is_as_it_is || effort == Effort::brief ||
                          (effort == Effort::limited && response.iterations > most_before_shooting);
     if (!has_converged && effort != Effort::brief && (is_last || std::isinf(firmness))) {
       if (!eq.groups().empty()) start_stuck();
