@@ -183,6 +183,10 @@ TEST(KeyError, NamesAMissingKeyAtItsTable) {
   EXPECT_EQ(verdict_with("mass = 1.0\n", ""), "study.toml:10:1: error: coordinate \"blade\" lacks the key \"mass\"");
   EXPECT_EQ(verdict_with("normal_load = \"N0\"\n", ""),
             "study.toml:25:1: error: slider \"contact\" lacks the key \"normal_load\"");
+  EXPECT_EQ(
+      verdict_with("between = [\"blade\", \"ground\"]\nstiffness = 10.0", "shares = { blade = 1 }\nstiffness = 10.0"),
+      "study.toml:27:1: error: slider \"contact\": \"shares\" are not taken here, whose u is the difference of two "
+      "coordinates: take between, or a [[contact]] with tangential and normal shares and a constant normal_load");
   EXPECT_EQ(verdict_with("name = \"disk\"\n", ""), "study.toml:6:1: error: [[coordinate]] lacks the key \"name\"");
   EXPECT_EQ(verdict_with("angular_frequency = 7.0\n", ""),
             "study.toml:32:1: error: the force on \"blade\" lacks \"angular_frequency\" [rad/s] or \"frequency\" [Hz]");

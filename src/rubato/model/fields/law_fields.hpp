@@ -4,6 +4,8 @@
 #include <rubato/model/fields/key.hpp>
 #include <rubato/model/friction_coefficient.hpp>
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <string>
 
@@ -32,6 +34,15 @@ void fields(auto& visit, Like<DamperDescription> auto& damper) {
   visit.quantity("damping", damper.damping, {.required = true, .unit = "N s/m"});
 }
 
+/// Sliders and stops join two coordinates.
+void refuse_shares(auto& reader, const char* instead) {
+  if (reader.has("shares"))
+    throw InvalidInput(reader.where("shares"),
+                       fmt::format("{}: \"shares\" are not taken here, whose u is the difference of two "
+                                   "coordinates: take between, or {}",
+                                   reader.what(), instead));
+}
+
 void fields(auto& visit, Like<SliderDescription> auto& slider) {
   visit.numbered_name("slider", slider.name, slider.where, {.says = "heads its columns in the results"});
   visit.between("between", slider.between, slider.between_where, {});
@@ -39,6 +50,7 @@ void fields(auto& visit, Like<SliderDescription> auto& slider) {
   visit.where_given(slider.joint_where, "joint");
   visit.exactly_one_of({"between", "joint"});
   visit.check([&](auto& reader) {
+    refuse_shares(reader, "a [[contact]] with tangential and normal shares and a constant normal_load");
     if (!slider.joint.empty()) reader.refuse_beside("joint", {"between"});
     if (slider.joint.empty() && slider.between[0].empty()) reader.refuse_to_lack("between");
   });
@@ -72,6 +84,7 @@ void fields(auto& visit, Like<StopDescription> auto& stop) {
   visit.where_given(stop.joint_where, "joint");
   visit.exactly_one_of({"between", "joint"});
   visit.check([&](auto& reader) {
+    refuse_shares(reader, "a [[contact]] with normal shares");
     if (!stop.joint.empty()) reader.refuse_beside("joint", {"between"});
     if (stop.joint.empty() && stop.between[0].empty()) reader.refuse_to_lack("between");
   });
