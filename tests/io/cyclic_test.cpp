@@ -125,6 +125,10 @@ TEST(Cyclic, IsRefusedByNameWhereItCannotBe) {
   EXPECT_EQ(verdict(files + cyclic + modes, folder), "accepted");
   refused(files + edited("24", "23", cyclic) + modes, "the worst is node");
   refused(files + edited("24", "1", cyclic) + modes, "from 2 to 10000");
+  EXPECT_EQ(verdict(files + cyclic + modes + "nodal_diameters = [0, 12]\n", folder), "accepted");
+  refused(files + cyclic + modes + "nodal_diameters = [0, 13]\n", "whole numbers from 0 to 12, got 13");
+  refused(files + cyclic + modes + "nodal_diameters = [1.5]\n", "got 1.5");
+  refused(files + modes + "nodal_diameters = [3]\n", "add [cyclic], or leave them out");
   refused(files + edited("NLEFT", "NLEFTT", cyclic) + modes, "did you mean \"NLEFT\"?");
   refused(files + edited("NLEFT", "NTIP", cyclic) + modes, "both sides must have the same mesh");
   refused(files + edited("NLEFT", "NRIGHT", cyclic) + modes, "belongs to both sides");

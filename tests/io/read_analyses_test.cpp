@@ -40,7 +40,7 @@ TEST(Analysis, ReadsModes) {
             "study.toml:40:9: error: analysis \"response\": count must be a whole number of at least 1, got 0");
   EXPECT_EQ(with("step = 0.1\n"),
             "study.toml:40:1: error: analysis \"response\" has no key \"step\"; known: name, type, count, observe, "
-            "about, contacts, sweep, shapes, engine_orders, speed, speed_unit");
+            "about, contacts, nodal_diameters, sweep, shapes, engine_orders, speed, speed_unit");
   EXPECT_EQ(with("observe = [\"balde\"]\n"),
             "study.toml:40:12: error: observe names \"balde\", which is no coordinate; did you mean \"blade\"? (known: "
             "disk, blade)");

@@ -33,6 +33,30 @@ void refuse_without_cyclic_condition(const model::AnalysisDescription& analysis,
                                                    analysis.name));
 }
 
+namespace {
+
+/// Those asked for, rising and each once; all unless given.
+std::vector<Index> diameters_of(const model::ModesDescription& description, const model::CyclicSector& sector,
+                                const StudyInput& input, const std::string& title, const Location& where) {
+  std::vector<Index> diameters;
+  for (const model::Quantity& quantity : description.nodal_diameters) {
+    const double k = model::evaluate(quantity, input.parameters, title + "nodal_diameters");
+    if (!(k >= 0.0 && k <= static_cast<double>(sector.largest_diameter()) && k == std::floor(k)))
+      throw InvalidInput(quantity.where.line > 0 ? quantity.where : where,
+                         fmt::format("{}nodal_diameters of {} sectors are whole numbers from 0 to {}, got {}; a "
+                                     "larger one is another one in disguise: k and {} - k are a pair",
+                                     title, sector.sectors(), sector.largest_diameter(), k, sector.sectors()));
+    diameters.push_back(static_cast<Index>(k));
+  }
+  if (description.nodal_diameters.empty())
+    for (Index k = 0; k <= sector.largest_diameter(); ++k) diameters.push_back(k);
+  std::sort(diameters.begin(), diameters.end());
+  diameters.erase(std::unique(diameters.begin(), diameters.end()), diameters.end());
+  return diameters;
+}
+
+}  // namespace
+
 CyclicModesPlan plan_cyclic_modes(const std::string& name, const Location& where,
                                   const model::ModesDescription& description, const StudyInput& input) {
   const std::string title = "analysis \"" + name + "\": ";
@@ -52,11 +76,13 @@ CyclicModesPlan plan_cyclic_modes(const std::string& name, const Location& where
   if (description.count && plan.sector.size() < plan.count)
     throw InvalidInput(where, fmt::format("{}count is {}, but a sector with one of its sides has {} modes", title,
                                           plan.count, plan.sector.size()));
-  for (Index k = 0; k <= plan.sector.largest_diameter(); ++k) plan.diameters.push_back(k);
+  plan.diameters = diameters_of(description, plan.sector, input, title, where);
   plan.observed = observed_or_all(description.observe, {input.kind.system(), input.kind.supports()});
   plan.summary = fmt::format(
-      "modes of {} sectors, nodal diameters 0 to {}: {} pairs of nodes at the sides, {:.1g} m apart at most{}",
-      plan.sector.sectors(), plan.sector.largest_diameter(), plan.sector.pairs(), plan.sector.largest_distance(),
+      "modes of {} sectors, {} of the nodal diameters 0 to {}: {} pairs of nodes at the sides, {:.1g} m apart at "
+      "most{}",
+      plan.sector.sectors(), plan.diameters.size(), plan.sector.largest_diameter(), plan.sector.pairs(),
+      plan.sector.largest_distance(),
       plan.sector.is_exchanged() ? " (the set called left lies at the right: it follows the other one)" : "");
   plan.expected_bytes = 28.0 * static_cast<double>(plan.count * input.kind.limit_count()) *
                         static_cast<double>(plan.diameters.size()) * static_cast<double>(8 + 2 * plan.observed.size());

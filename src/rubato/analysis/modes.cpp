@@ -240,6 +240,9 @@ ModesPlan plan_modes(const std::string& name, const Location& where, const model
                      StudyTransients* transients) {
   const std::string title = "analysis \"" + name + "\": ";
   const integrate::ModesRequest request{title, where, description, parameters};
+  if (!description.nodal_diameters.empty())
+    throw InvalidInput(description.nodal_diameters_where,
+                       title + "\"nodal_diameters\" are of a disk of equal sectors; add [cyclic], or leave them out");
   ModesPlan plan;
   plan.count = kind.mode_count(request);
   plan.is_asked = description.count.has_value();

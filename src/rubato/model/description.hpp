@@ -416,6 +416,8 @@ struct ModesDescription {
   std::optional<ReachedDescription> about_reached;               ///< of a mechanism
   std::optional<std::vector<ContactLimitDescription>> contacts;  ///< free and stuck unless given
   Location contacts_where;
+  std::vector<Quantity> nodal_diameters;  ///< of a disk of equal sectors; all unless given
+  Location nodal_diameters_where;
   SweptDescription swept;
 };
 

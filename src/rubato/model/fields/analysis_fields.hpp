@@ -230,6 +230,9 @@ void fields(auto& visit, ModesDescription& modes) {
            "limits of contacts and sliders: \"open\", \"stuck\", \"frictionless\", \"static\", or { sliding = { NAME "
            "= 1 } } with the sign in which each slides",
        .unless = "free and stuck"});
+  visit.quantities("nodal_diameters", modes.nodal_diameters, {},
+                   {.says = "of a disk of equal sectors ([cyclic]), from 0 to half their number", .unless = "all"});
+  visit.where_given(modes.nodal_diameters_where, "nodal_diameters");
   swept_fields(visit, modes.swept);
   visit.flag("shapes", modes.swept.keeps_samples,
              {.says = "of a sweep: keep all columns of every sample, besides its key numbers", .unless = "false"});
