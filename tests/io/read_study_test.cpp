@@ -185,7 +185,7 @@ TEST(KeyError, NamesAMissingKeyAtItsTable) {
             "study.toml:25:1: error: slider \"contact\" lacks the key \"normal_load\"");
   EXPECT_EQ(
       verdict_with("between = [\"blade\", \"ground\"]\nstiffness = 10.0", "shares = { blade = 1 }\nstiffness = 10.0"),
-      "study.toml:27:1: error: slider \"contact\": \"shares\" are not taken here, whose u is the difference of two "
+      "study.toml:27:10: error: slider \"contact\": \"shares\" are not taken here, whose u is the difference of two "
       "coordinates: take between, or a [[contact]] with tangential and normal shares and a constant normal_load");
   EXPECT_EQ(verdict_with("name = \"disk\"\n", ""), "study.toml:6:1: error: [[coordinate]] lacks the key \"name\"");
   EXPECT_EQ(verdict_with("angular_frequency = 7.0\n", ""),
