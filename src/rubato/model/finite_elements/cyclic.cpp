@@ -85,6 +85,113 @@ double smallest_distance(const std::vector<Point>& points) {
   return smallest;
 }
 
+/// The sectors lie about an axis, each turned by alpha from the one before.
+struct DiskAxis {
+  Point direction, origin;
+  Eigen::Matrix3d turn;  ///< by alpha
+
+  double radius(const Point& point) const {
+    const Point at = point - origin;
+    return (at - at.dot(direction) * direction).norm();
+  }
+};
+
+DiskAxis axis_of(const CyclicDescription& description, const numerics::Parameters& parameters) {
+  if (description.axis.size() != 3)
+    throw InvalidInput(description.axis_where, "[cyclic]: axis takes three numbers, along x, y and z");
+  if (!description.origin.empty() && description.origin.size() != 3)
+    throw InvalidInput(description.origin_where, "[cyclic]: origin takes three numbers [m]");
+  DiskAxis axis{point_of(description.axis, parameters, "axis"), point_of(description.origin, parameters, "origin"), {}};
+  if (!(axis.direction.norm() > 0.0) || !axis.direction.allFinite())
+    throw InvalidInput(description.axis_where, "[cyclic]: axis must have a length");
+  if (!axis.origin.allFinite()) throw InvalidInput(description.origin_where, "[cyclic]: origin must be finite");
+  axis.direction.normalize();
+  const double alpha = 2.0 * std::numbers::pi / static_cast<double>(description.sectors);
+  axis.turn = Eigen::AngleAxisd(alpha, axis.direction).toRotationMatrix();
+  return axis;
+}
+
+/// @return the largest radius of a node [m]
+double require_a_bore(const DiskAxis& axis, const CyclicDescription& description, const Structure& structure) {
+  double largest = 0.0;
+  for (const Point& position : structure.positions) largest = std::max(largest, axis.radius(position));
+  for (std::size_t i = 0; i < structure.names.size(); ++i) {
+    const auto& places = structure.places[i];
+    const bool moves = std::any_of(places.begin(), places.end(), [](Index place) { return place != ground; });
+    if (moves && !(axis.radius(structure.positions[i]) > on_axis * largest))
+      throw InvalidInput(description.axis_where,
+                         fmt::format("[cyclic]: node {} lies on the axis, where all sectors meet; cyclic symmetry "
+                                     "takes sectors with a bore, or nodes on the axis that are held",
+                                     structure.names[i]));
+  }
+  return largest;
+}
+
+/// Nodes of both sides, those that pair beside each other.
+struct Sides {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< from the side at the smaller angle to the other
+  double distance = 0.0;                                   ///< largest, of a turned node from its partner [m]
+  bool is_exchanged = false;                               ///< the set called left lies at the larger angle
+};
+
+void require_two_sides(const std::vector<std::size_t>& left, const std::vector<std::size_t>& right,
+                       const CyclicDescription& description, const Structure& structure) {
+  for (const std::size_t node : left)
+    if (std::find(right.begin(), right.end(), node) != right.end())
+      throw InvalidInput(description.right_where,
+                         fmt::format("[cyclic]: node {} belongs to both sides, \"{}\" and "
+                                     "\"{}\"; the sides of a sector have no node in common",
+                                     structure.names[node], description.left, description.right));
+  if (left.size() != right.size())
+    throw InvalidInput(
+        description.right_where,
+        fmt::format("[cyclic]: \"{}\" has {} nodes and \"{}\" has {}; both sides must have the same "
+                    "mesh, turned by 360/{} degrees",
+                    description.left, left.size(), description.right, right.size(), description.sectors));
+}
+
+Sides paired_sides(const DiskAxis& axis, double largest_radius, const CyclicDescription& description,
+                   const FiniteElements& elements, const Structure& structure) {
+  const std::vector<std::size_t> left = nodes_of(description.left, description.left_where, elements, structure);
+  const std::vector<std::size_t> right = nodes_of(description.right, description.right_where, elements, structure);
+  require_two_sides(left, right, description, structure);
+  const auto points_of = [&](const std::vector<std::size_t>& nodes, const Eigen::Matrix3d& turn) {
+    std::vector<Point> points;
+    for (const std::size_t node : nodes)
+      points.push_back(axis.origin + turn * (structure.positions[node] - axis.origin));
+    return points;
+  };
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
+  const double tolerance = pairing_tolerance * std::min(smallest_distance(points_of(left, none)), largest_radius);
+  Pairing pairing = paired(points_of(left, axis.turn), points_of(right, none), tolerance);
+  const Pairing backwards = paired(points_of(left, axis.turn.transpose()), points_of(right, none), tolerance);
+  Sides sides;
+  if (backwards.distance < pairing.distance && pairing.far > 0) {
+    sides.is_exchanged = true;
+    pairing = backwards;
+  }
+  if (pairing.far > 0)
+    throw InvalidInput(
+        description.sectors_where,
+        fmt::format("[cyclic]: the sides do not pair: of {} nodes of \"{}\" turned by 360/{} degrees about the axis {} "
+                    "lie farther than {:.2g} m from any of \"{}\", the worst is node {}, {:.4g} m from node {}; are "
+                    "sectors, axis, origin and both sets those of the mesh?",
+                    left.size(), description.left, description.sectors, pairing.far, tolerance, description.right,
+                    structure.names[left[pairing.worst]], pairing.distance,
+                    structure.names[right[pairing.partner[pairing.worst]]]));
+  std::vector<char> is_taken(right.size(), 0);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const std::size_t partner = right[pairing.partner[i]];
+    if (is_taken[pairing.partner[i]]++ != 0)
+      throw InvalidInput(description.left_where,
+                         fmt::format("[cyclic]: two nodes of \"{}\" pair with node {} of \"{}\"", description.left,
+                                     structure.names[partner], description.right));
+    sides.pairs.push_back(sides.is_exchanged ? std::pair(partner, left[i]) : std::pair(left[i], partner));
+  }
+  sides.distance = pairing.distance;
+  return sides;
+}
+
 }  // namespace
 
 CyclicSector::CyclicSector(const CyclicDescription& description, const FiniteElements& elements, const Model& model,
@@ -95,88 +202,15 @@ CyclicSector::CyclicSector(const CyclicDescription& description, const FiniteEle
     throw InvalidInput(description.where,
                        "[cyclic] turns nodes about the axis, and no file of [model] tells where they "
                        "are; give mesh");
-  if (description.axis.size() != 3)
-    throw InvalidInput(description.axis_where, "[cyclic]: axis takes three numbers, along x, y and z");
-  if (!description.origin.empty() && description.origin.size() != 3)
-    throw InvalidInput(description.origin_where, "[cyclic]: origin takes three numbers [m]");
-  Point axis = point_of(description.axis, parameters, "axis");
-  const Point origin = point_of(description.origin, parameters, "origin");
-  if (!(axis.norm() > 0.0) || !axis.allFinite())
-    throw InvalidInput(description.axis_where, "[cyclic]: axis must have a length");
-  axis.normalize();
-  if (!origin.allFinite()) throw InvalidInput(description.origin_where, "[cyclic]: origin must be finite");
-  const auto radius = [&](std::size_t node) {
-    const Point at = structure.positions[node] - origin;
-    return (at - at.dot(axis) * axis).norm();
-  };
-  double largest = 0.0;
-  for (std::size_t i = 0; i < structure.names.size(); ++i) largest = std::max(largest, radius(i));
-  for (std::size_t i = 0; i < structure.names.size(); ++i) {
-    const auto& places = structure.places[i];
-    const bool moves = std::any_of(places.begin(), places.end(), [](Index place) { return place != ground; });
-    if (moves && !(radius(i) > on_axis * largest))
-      throw InvalidInput(description.axis_where,
-                         fmt::format("[cyclic]: node {} lies on the axis, where all sectors meet; cyclic symmetry "
-                                     "takes sectors with a bore, or nodes on the axis that are held",
-                                     structure.names[i]));
-  }
+  const DiskAxis axis = axis_of(description, parameters);
+  const double largest = require_a_bore(axis, description, structure);
+  const Sides sides = paired_sides(axis, largest, description, elements, structure);
+  is_exchanged_ = sides.is_exchanged;
+  largest_distance_ = sides.distance;
+  pairs_ = static_cast<Index>(sides.pairs.size());
 
-  std::vector<std::size_t> left = nodes_of(description.left, description.left_where, elements, structure);
-  std::vector<std::size_t> right = nodes_of(description.right, description.right_where, elements, structure);
-  for (const std::size_t node : left)
-    if (std::find(right.begin(), right.end(), node) != right.end())
-      throw InvalidInput(description.right_where,
-                         fmt::format("[cyclic]: node {} belongs to both sides, \"{}\" and "
-                                     "\"{}\"; the sides of a sector have no node in common",
-                                     structure.names[node], description.left, description.right));
-  if (left.size() != right.size())
-    throw InvalidInput(description.right_where,
-                       fmt::format("[cyclic]: \"{}\" has {} nodes and \"{}\" has {}; both sides must have the same "
-                                   "mesh, turned by 360/{} degrees",
-                                   description.left, left.size(), description.right, right.size(), sectors_));
-
-  const auto points_of = [&](const std::vector<std::size_t>& nodes, const Eigen::Matrix3d& turn) {
-    std::vector<Point> points;
-    for (const std::size_t node : nodes) points.push_back(origin + turn * (structure.positions[node] - origin));
-    return points;
-  };
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
-  const double alpha = 2.0 * std::numbers::pi / static_cast<double>(sectors_);
-  const Eigen::Matrix3d forwards = Eigen::AngleAxisd(alpha, axis).toRotationMatrix();
-  const double size = std::min(smallest_distance(points_of(left, none)), largest);
-  const double tolerance = pairing_tolerance * size;
-  Pairing pairing = paired(points_of(left, forwards), points_of(right, none), tolerance);
-  const Pairing backwards = paired(points_of(left, forwards.transpose()), points_of(right, none), tolerance);
-  if (backwards.distance < pairing.distance && pairing.far > 0) {
-    is_exchanged_ = true;
-    pairing = backwards;
-  }
-  if (pairing.far > 0)
-    throw InvalidInput(
-        description.sectors_where,
-        fmt::format("[cyclic]: the sides do not pair: of {} nodes of \"{}\" turned by 360/{} degrees about the axis {} "
-                    "lie farther than {:.2g} m from any of \"{}\", the worst is node {}, {:.4g} m from node {}; are "
-                    "sectors, axis, origin and both sets those of the mesh?",
-                    left.size(), description.left, sectors_, pairing.far, tolerance, description.right,
-                    structure.names[left[pairing.worst]], pairing.distance,
-                    structure.names[right[pairing.partner[pairing.worst]]]));
-  std::vector<char> is_taken(right.size(), 0);
-  for (std::size_t i = 0; i < left.size(); ++i)
-    if (is_taken[pairing.partner[i]]++ != 0)
-      throw InvalidInput(description.left_where,
-                         fmt::format("[cyclic]: two nodes of \"{}\" pair with node {} of \"{}\"", description.left,
-                                     structure.names[right[pairing.partner[i]]], description.right));
-  largest_distance_ = pairing.distance;
-  pairs_ = static_cast<Index>(left.size());
-
-  // From the side at the smaller angle to the one at the larger.
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    const std::size_t partner = right[pairing.partner[i]];
-    pairs.push_back(is_exchanged_ ? std::pair(partner, left[i]) : std::pair(left[i], partner));
-  }
   std::vector<char> follows(static_cast<std::size_t>(model.size()), 0);
-  for (const auto& [from, to] : pairs)
+  for (const auto& [from, to] : sides.pairs)
     for (const Index place : structure.places[to])
       if (place != ground) follows[static_cast<std::size_t>(place)] = 1;
   std::vector<Index> column(follows.size(), ground);
@@ -187,11 +221,11 @@ CyclicSector::CyclicSector(const CyclicDescription& description, const FiniteEle
       own.emplace_back(static_cast<int>(i), static_cast<int>(count), 1.0);
       column[i] = count++;
     }
-  for (const auto& [from, to] : pairs)
+  for (const auto& [from, to] : sides.pairs)
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = a / 3 * 3; b < a / 3 * 3 + 3; ++b) {
         const Index row = structure.places[to][a], source = structure.places[from][b];
-        const double share = forwards(static_cast<Index>(a % 3), static_cast<Index>(b % 3));
+        const double share = axis.turn(static_cast<Index>(a % 3), static_cast<Index>(b % 3));
         if (std::abs(share) < 1e-12) continue;
         // Both move along this pair of directions, or neither does.
         if ((row == ground) != (source == ground))
